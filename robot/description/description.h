@@ -1,0 +1,21 @@
+// Reads what the robot is from models/: the car from URDF (urdfdom), the cameras from their data sheets (YAML).
+#pragma once
+
+#include <filesystem>
+
+#include "robot/types/car.h"
+#include "robot/types/depth_camera.h"
+#include "robot/types/measurements.h"
+
+namespace merlin {
+
+// Throws InputError: file, line where the parser knows it, and what is missing or wrong (no base_link, missing mesh, a
+// wheel or frame that the car needs, a non-positive mass or dimension). Meshes resolve "package://<name>/x" and relative
+// paths against the URDF's own folder.
+CarDescription ReadCar(const std::filesystem::path& urdf);
+
+// Throw InputError: unknown key (names the nearest), missing key, value out of range; all faults at once.
+DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml);
+ColorCameraSheet ReadColorCameraSheet(const std::filesystem::path& yaml);
+
+}  // namespace merlin

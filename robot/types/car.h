@@ -1,0 +1,72 @@
+// The car as plain data, as models/merlin/merlin.urdf says it. The twin builds a body of it, the stack takes its frames.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "robot/types/se3.h"
+
+namespace merlin {
+
+struct CarShape {
+  enum class Kind { kBox, kCylinder, kSphere, kMesh };
+  Kind kind = Kind::kBox;
+  Eigen::Vector3d size_m{0, 0, 0};  // box: full edges; cylinder: radius, length (along z), 0; sphere: radius, 0, 0; mesh: scale
+  std::filesystem::path mesh;       // absolute, exists
+  Pose T_link_shape = Pose::Identity();
+  std::string material;             // a name in materials.yaml; may be empty
+  std::array<float, 4> rgba{0.5f, 0.5f, 0.5f, 1.0f};
+};
+
+struct CarLink {
+  enum class Joint { kFixed, kRevolute, kContinuous };
+  std::string name;
+  std::string parent;                          // empty for the root, base_link
+  std::string joint_name;
+  Joint joint = Joint::kFixed;
+  Pose T_parent_link = Pose::Identity();       // at joint angle 0
+  Eigen::Vector3d axis{1, 0, 0};               // of the joint, in the link's frame
+  double joint_min_rad = 0.0, joint_max_rad = 0.0;
+  double mass_kg = 0.0;                        // 0: a frame only
+  Pose T_link_inertial = Pose::Identity();
+  Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  // about the inertial frame
+  std::vector<CarShape> visual, collision;
+};
+
+// Motor, gear and encoder: the <drivetrain> element of the URDF.
+struct Drivetrain {
+  double gear = 0.0;                           // motor turns a wheel turn
+  int encoder_counts_per_motor_turn = 0;
+  double motor_constant_v_s = 0.0;             // K: V per rad/s and N m per A
+  double resistance_ohm = 0.0;
+  double rotor_inertia_kg_m2 = 0.0;
+  double voltage_max_v = 0.0;
+  double speed_max_m_s = 0.0;
+  double acceleration_max_m_s2 = 0.0;
+  double steering_slew_rad_s = 0.0;
+  double tyre_friction = 0.0;
+};
+
+struct CarDescription {
+  std::string name;
+  std::vector<CarLink> links;  // parents before children; [0] is base_link: on the ground below the rear axle's middle
+  // Derived from the links, so that they cannot disagree with them:
+  double wheelbase_m = 0.0;
+  double track_m = 0.0;
+  double wheel_radius_m = 0.0;
+  double steering_max_rad = 0.0;
+  Drivetrain drivetrain;
+  Pose T_base_depth = Pose::Identity();  // optical frames
+  Pose T_base_color = Pose::Identity();
+  Pose T_base_compass = Pose::Identity();
+
+  double MetresPerCount() const {  // of the four-wheel mean's path
+    return 2.0 * std::numbers::pi * wheel_radius_m / (drivetrain.gear * drivetrain.encoder_counts_per_motor_turn);
+  }
+};
+
+}  // namespace merlin

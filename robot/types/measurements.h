@@ -1,0 +1,57 @@
+// What the other devices deliver and take. Stamps are the middle of the exposure or sampling instant.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "robot/types/camera_model.h"
+#include "robot/types/time.h"
+
+namespace merlin {
+
+// The data sheet of a colour camera (models/cameras/<name>.yaml).
+struct ColorCameraSheet {
+  std::string name;
+  CameraModel camera;
+  double rate_max_hz = 0.0;
+  double latency_s = 0.0;       // from mid-exposure to the stack
+  double read_noise_dn = 0.0;   // one sigma, 8-bit counts
+  double gain_dn_per_e = 0.0;   // shot noise variance of a value v is v * gain
+};
+
+// 8-bit BGR, row-major, three bytes a pixel, as OpenCV has it.
+struct ColorFrame {
+  Time stamp{0};
+  std::uint64_t index = 0;
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> bgr;
+};
+
+// Attitude of the body: rotation about x, y, z (roll, pitch, yaw; R = Rz Ry Rx), yaw counter-clockwise from the world's x axis.
+struct CompassReading {
+  Time stamp{0};
+  double roll_rad = 0.0;
+  double pitch_rad = 0.0;
+  double yaw_rad = 0.0;  // in (-pi, pi]
+};
+
+// What the car is to do, and for how long this holds. From expiry on, or at once if a number is not finite, the motor
+// is braked within 200 ms.
+struct DriveCommand {
+  double speed_m_s = 0.0;     // of the rear axle's middle, negative: backwards
+  double steering_rad = 0.0;  // of the virtual middle front wheel, positive: left
+  Duration valid_for{0};
+};
+
+struct DriveState {
+  Time stamp{0};
+  std::int64_t encoder_counts = 0;  // of the motor shaft, forwards positive
+  double steering_rad = 0.0;        // of the virtual middle front wheel, as the servo reports it
+  double current_a = 0.0;
+  double battery_v = 0.0;
+  bool expired = false;             // the last command has expired: the motor is braked
+};
+
+}  // namespace merlin

@@ -1,0 +1,1 @@
+#include "sim/color_camera.h"

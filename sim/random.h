@@ -1,0 +1,32 @@
+// Counter-based random numbers: Philox4x32-10 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
+// A draw is a pure function of (seed, sensor, frame, pixel, purpose, draw): no state, any order, any thread count, and
+// switching one sensor off changes no other's noise.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace merlin::sim {
+
+// The block function itself, as Random123 defines it.
+std::array<std::uint32_t, 4> Philox4x32(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
+
+enum class Sensor : std::uint32_t { kDepth = 1, kColor = 2, kCompass = 3, kDrive = 4 };
+
+// The stream of one pixel (or one reading) of one frame of one sensor.
+class Random {
+ public:
+  Random(std::uint64_t seed, Sensor sensor, std::uint64_t frame, std::uint32_t pixel = 0, std::uint16_t purpose = 0);
+  double Uniform();              // (0, 1)
+  double Normal();               // mean 0, sigma 1
+  double Poisson(double mean);   // mean >= 0; a Gaussian of the same variance above 50
+ private:
+  std::array<std::uint32_t, 4> counter_;
+  std::array<std::uint32_t, 2> key_;
+  std::array<std::uint32_t, 4> block_{};
+  int used_ = 4;
+  double spare_normal_ = 0.0;
+  bool has_spare_ = false;
+};
+
+}  // namespace merlin::sim

@@ -1,0 +1,1 @@
+#include "sim/ray_scene.h"

@@ -1,0 +1,48 @@
+// MuJoCo's OpenGL renderer without a display: EGL (Mesa surfaceless) or OSMesa, chosen and loaded at run time.
+// MuJoCo binds GL once a process: one back end per process. All calls from one thread at a time.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "robot/types/camera_model.h"
+#include "robot/types/se3.h"
+
+namespace merlin::sim {
+
+enum class Gl { kAuto, kEgl, kOsmesa, kOff };
+
+// What MuJoCo needs to draw, taken at exposure: the picture may be drawn later, beside the physics.
+class RenderSnapshot {
+ public:
+  explicit RenderSnapshot(const mjModel* model);
+  ~RenderSnapshot();
+  void Take(const mjModel* model, const mjData* data, const Pose& T_world_camera, const CameraModel& camera);
+  mjvScene scene;
+};
+
+class Renderer {
+ public:
+  // Opens the back end (kAuto: EGL, else OSMesa) and an offscreen buffer of the camera's size, no multisampling, no shadows.
+  // Throws MachineError when it cannot, naming what was tried. gl must not be kOff.
+  Renderer(const mjModel* model, const CameraModel& camera, Gl gl);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  // The pinhole picture, BGR, upper left first; out holds width * height * 3 bytes.
+  void Draw(RenderSnapshot& snapshot, std::span<std::uint8_t> bgr);
+
+  // "EGL: llvmpipe (LLVM 15.0.6, 256 bits)"
+  const std::string& name() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace merlin::sim

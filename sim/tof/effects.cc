@@ -1,0 +1,1 @@
+#include "sim/tof/tof_camera.h"

@@ -1,0 +1,85 @@
+// The world: a room (MJCF) with the car (CarDescription) in it, stepped by MuJoCo.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robot/types/car.h"
+#include "robot/types/measurements.h"
+#include "robot/types/se3.h"
+#include "robot/types/time.h"
+#include "sim/drivetrain.h"
+
+namespace merlin::sim {
+
+// A box that scenarios put in the way; it waits far below the floor until it is placed.
+struct Obstacle {
+  std::string name;
+  Eigen::Vector3d size_m{0.4, 0.4, 0.5};  // full edges
+  std::string material;                   // a name in materials.yaml
+};
+
+struct WorldOptions {
+  std::filesystem::path room;
+  CarDescription car;
+  Pose T_world_start = Pose::Identity();  // of base_link, on the floor
+  std::vector<Obstacle> obstacles;
+};
+
+// Two geoms that touch, the first of them the car's. A wheel on a geom named "floor*" is no contact.
+struct Touch {
+  std::string car_geom;
+  std::string other_geom;
+};
+
+class World {
+ public:
+  // Throws InputError: a room that is missing or not MJCF (with its line where MuJoCo knows it), a missing mesh, a car
+  // that starts in contact with anything but the floor.
+  explicit World(const WorldOptions& options);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  static constexpr Duration kStep{2'000'000};
+
+  // One physics step. Throws std::runtime_error when MuJoCo warns (bad state): the simulation stops loudly.
+  void Step();
+  Time Now() const;
+  Pose T_world_base() const;
+  double Speed_m_s() const;  // of the rear axle's middle along x, signed
+  std::vector<Touch> CarTouches() const;
+  bool IsCarGeom(int geom_id) const;
+
+  // Puts the obstacle's bottom centre at the pose, or takes it away again.
+  void PlaceObstacle(const std::string& name, const Pose& T_world_obstacle);
+  void RemoveObstacle(const std::string& name);
+  // Smallest distance between the car and the obstacle; max_m where it is farther.
+  double ObstacleDistance_m(const std::string& name, double max_m = 10.0) const;
+
+  drivetrain::Controller& drive() { return drive_; }
+  const drivetrain::Controller& drive() const { return drive_; }
+
+  // The outer outline of the room ("plan_xy_m"), empty if the room gives none; yaw of magnetic north.
+  const std::vector<Eigen::Vector2d>& plan_xy_m() const { return plan_xy_m_; }
+  double north_yaw_rad() const { return north_yaw_rad_; }
+
+  const mjModel* model() const { return model_; }
+  const mjData* data() const { return data_; }
+
+  // time, qpos, qvel, act: what the state hash is made of.
+  std::vector<double> State() const;
+
+ private:
+  mjModel* model_ = nullptr;
+  mjData* data_ = nullptr;
+  drivetrain::Controller drive_;
+  std::vector<Eigen::Vector2d> plan_xy_m_;
+  double north_yaw_rad_ = 0.0;
+};
+
+}  // namespace merlin::sim
