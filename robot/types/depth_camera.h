@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robot/types/camera_model.h"
+#include "robot/types/error.h"
 #include "robot/types/time.h"
 
 namespace merlin {
@@ -57,6 +58,21 @@ struct DepthCameraSheet {
     return Contrast(settings.frequency_hz) * signal_e_m2_per_us * settings.integration_s * 1e6;
   }
 };
+
+// Throws InputError for settings the sheet does not list as valid.
+inline void CheckSettings(const DepthCameraSheet& sheet, const DepthSettings& settings) {
+  if (!(settings.integration_s >= sheet.integration_min_s && settings.integration_s <= sheet.integration_max_s))
+    throw InputError(sheet.name, "invalid integration time",
+                     std::to_string(sheet.integration_min_s * 1e6) + " to " + std::to_string(sheet.integration_max_s * 1e6) + " us",
+                     std::to_string(settings.integration_s * 1e6) + " us");
+  std::string valid;
+  for (const double frequency_hz : sheet.frequencies_hz) {
+    if (settings.frequency_hz == frequency_hz) return;
+    valid += (valid.empty() ? "" : " or ") + std::to_string(frequency_hz * 1e-6);
+  }
+  throw InputError(sheet.name, "invalid modulation frequency", valid + " MHz",
+                   std::to_string(settings.frequency_hz * 1e-6) + " MHz");
+}
 
 // One measurement. Images are row-major, width x height, upper left first, as the camera sees.
 struct DepthFrame {
