@@ -1,1 +1,79 @@
+#include "perception/odometry.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace merlin {
+namespace {
+
+constexpr Duration kHistory = std::chrono::seconds(1);
+
+// Exact motion on a circle: path along the rear axle, turned angle.
+Pose ArcMotion(double path_m, double turn_rad) {
+  const double half = 0.5 * turn_rad;
+  const double chord_m = path_m * (std::abs(half) < 1e-6 ? 1.0 - half * half / 6.0 : std::sin(half) / half);
+  return FromXyYaw(chord_m * std::cos(half), chord_m * std::sin(half), turn_rad);
+}
+
+}  // namespace
+
+double WheelMeanRatio(double wheelbase_m, double track_m, double steering_rad) {
+  // In units of the rear axle's radius R = L / tan(steering): half track t, wheelbase l. The rear wheels' mean is 1.
+  const double curvature_1_m = std::tan(std::abs(steering_rad)) / wheelbase_m;
+  const double t = 0.5 * track_m * curvature_1_m;
+  const double l = wheelbase_m * curvature_1_m;
+  return 0.5 + 0.25 * (std::hypot(1.0 - t, l) + std::hypot(1.0 + t, l));
+}
+
+Odometry::Odometry(const CarDescription& car)
+    : wheelbase_m_(car.wheelbase_m), track_m_(car.track_m), metres_per_count_(car.MetresPerCount()) {}
+
+void Odometry::Update(const DriveState& state) {
+  Pose T_odom_base = knots_.empty() ? Pose::Identity() : knots_.back().T_odom_base;
+  if (last_) {
+    const double steering_rad = 0.5 * (last_->steering_rad + state.steering_rad);
+    const double wheels_m = metres_per_count_ * static_cast<double>(state.encoder_counts - last_->encoder_counts);
+    const double path_m = wheels_m / WheelMeanRatio(wheelbase_m_, track_m_, steering_rad);
+    T_odom_base = T_odom_base * ArcMotion(path_m, path_m * std::tan(steering_rad) / wheelbase_m_);
+  }
+  last_ = state;
+  knots_.push_back({state.stamp, T_odom_base});
+  while (knots_.front().stamp + kHistory < state.stamp) knots_.pop_front();
+}
+
+std::optional<Pose> Odometry::At(Time time) const {
+  if (knots_.empty()) return std::nullopt;
+  const auto after = std::lower_bound(knots_.begin(), knots_.end(), time,
+                                      [](const Knot& knot, Time t) { return knot.stamp < t; });
+  if (after == knots_.begin()) return knots_.front().T_odom_base;
+  if (after == knots_.end()) return knots_.back().T_odom_base;
+  const auto before = std::prev(after);
+  return Interpolate(before->T_odom_base, after->T_odom_base,
+                     Seconds(time - before->stamp) / Seconds(after->stamp - before->stamp));
+}
+
+void Heading::Update(Time stamp, double compass_yaw_rad, double odometry_yaw_rad) {
+  const double measured_variance = config_.compass_sigma_rad * config_.compass_sigma_rad;
+  const double offset_rad = WrapPi(compass_yaw_rad - odometry_yaw_rad);
+  if (!started_) {
+    started_ = true;
+    offset_rad_ = offset_rad;
+    variance_ = measured_variance;
+  } else {
+    const double turned_rad = WrapPi(odometry_yaw_rad - odometry_yaw_rad_);
+    variance_ += std::pow(config_.drift_per_turn * turned_rad, 2) +
+                 std::pow(config_.drift_rad_per_sqrt_s, 2) * Seconds(stamp - stamp_);
+    const double gain = variance_ / (variance_ + measured_variance);
+    offset_rad_ = WrapPi(offset_rad_ + gain * WrapPi(offset_rad - offset_rad_));
+    variance_ *= 1.0 - gain;
+  }
+  stamp_ = stamp;
+  odometry_yaw_rad_ = odometry_yaw_rad;
+}
+
+double Heading::Sigma_rad() const {
+  return started_ ? std::sqrt(variance_) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace merlin

@@ -1,1 +1,43 @@
+#include "perception/pipeline.h"
 
+#include <cmath>
+#include <utility>
+
+namespace merlin {
+
+Pipeline::Pipeline(Rig rig, const PerceptionConfig& config)
+    : rig_(std::move(rig)),
+      config_(config),
+      rays_(PixelRays(rig_.depth.camera)),
+      odometry_(rig_.car),
+      heading_(config.heading) {}
+
+void Pipeline::Add(const CompassReading& reading) {
+  if (!std::isfinite(reading.yaw_rad)) return;
+  if (const auto T_odom_base = odometry_.At(reading.stamp)) heading_.Update(reading.stamp, reading.yaw_rad, Yaw(*T_odom_base));
+}
+
+void Pipeline::Add(ColorFrame frame) { color_ = std::move(frame); }
+
+std::optional<Observation> Pipeline::Process(DepthFrame frame) {
+  const auto T_odom_base = odometry_.At(frame.stamp);
+  if (!T_odom_base) return std::nullopt;
+
+  Observation observation;
+  observation.stamp = frame.stamp;
+  observation.T_odom_base = *T_odom_base;
+  observation.yaw_rad = heading_.Yaw_rad(Yaw(*T_odom_base));
+  observation.yaw_sigma_rad = heading_.Sigma_rad();
+
+  const FilteredDepth filtered = FilterDepth(std::move(frame), rig_.depth, config_.filter);
+  ProjectDepth(filtered, rig_.depth, rays_, rig_.T_base_depth, observation);
+
+  if (color_ && rig_.color && std::abs(Seconds(observation.stamp - color_->stamp)) <= config_.color_age_max_s) {
+    const Pose T_odom_basecolor = *odometry_.At(color_->stamp);
+    const Pose T_color_base = rig_.T_base_color.inverse() * T_odom_basecolor.inverse() * *T_odom_base;
+    ColorPoints(observation.points_base, *color_, rig_.color->camera, T_color_base);
+  }
+  return observation;
+}
+
+}  // namespace merlin

@@ -1,1 +1,39 @@
+#include "perception/project.h"
 
+#include <cmath>
+#include <numbers>
+
+namespace merlin {
+
+double RangeSigma_m(double amplitude_e, const DepthCameraSheet& sheet, const DepthSettings& settings) {
+  const double scale_m = kSpeedOfLight_m_s / (4.0 * std::numbers::sqrt2 * std::numbers::pi * settings.frequency_hz);
+  const double signal_e = amplitude_e / sheet.Contrast(settings.frequency_hz);
+  return scale_m * std::sqrt(signal_e + 2.0 * sheet.read_noise_e * sheet.read_noise_e) / amplitude_e;
+}
+
+std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera) {
+  std::vector<Eigen::Vector3f> rays;
+  rays.reserve(static_cast<std::size_t>(camera.width) * camera.height);
+  for (int v = 0; v < camera.height; ++v)
+    for (int u = 0; u < camera.width; ++u) rays.push_back(camera.Ray(u, v).cast<float>());
+  return rays;
+}
+
+void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, const std::vector<Eigen::Vector3f>& rays,
+                  const Pose& T_base_camera, Observation& observation) {
+  const Eigen::Isometry3f T = T_base_camera.cast<float>();
+  observation.camera_base = T.translation();
+  observation.rejections = depth.counts;
+  observation.points_base.clear();
+  observation.saturated_base.clear();
+  for (std::size_t i = 0; i < depth.frame.size(); ++i) {
+    if (depth.reasons[i] == Rejection::kSaturated) observation.saturated_base.push_back(T.linear() * rays[i]);
+    if (depth.reasons[i] != Rejection::kNone) continue;
+    Point point;
+    point.position = T * (rays[i] * depth.frame.range_m[i]);
+    point.sigma_m = static_cast<float>(RangeSigma_m(depth.frame.amplitude[i], sheet, depth.frame.settings));
+    observation.points_base.push_back(point);
+  }
+}
+
+}  // namespace merlin

@@ -1,0 +1,66 @@
+// Where the car has gone, from encoder and steering: the car model of the thesis (eq. 3.1-3.5) with signed speed.
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "robot/types/car.h"
+#include "robot/types/measurements.h"
+#include "robot/types/se3.h"
+
+namespace merlin {
+
+// How much farther the mean of the four wheels rolls than the rear axle's middle, on a circle: the encoder sits behind
+// ideal differentials and counts the former. 1 at 0, 1.053 at 25 deg for wheelbase 0.33 m, track 0.26 m; even in the angle.
+double WheelMeanRatio(double wheelbase_m, double track_m, double steering_rad);
+
+class Odometry {
+ public:
+  explicit Odometry(const CarDescription& car);
+  // States in order of stamps.
+  void Update(const DriveState& state);
+  // Pose of the car at a time between the oldest and newest state kept (about a second); clamped to these.
+  // Nothing before the first state.
+  std::optional<Pose> At(Time time) const;
+
+ private:
+  struct Knot {
+    Time stamp;
+    Pose T_odom_base;
+  };
+  double wheelbase_m_, track_m_, metres_per_count_;
+  std::optional<DriveState> last_;
+  std::deque<Knot> knots_;
+};
+
+// The heading: compass (absolute, noisy) and odometry (smooth, drifting) as a Kalman filter of one state, the angle
+// between the odometry's frame and the world.
+struct HeadingConfig {
+  double compass_sigma_rad = 0.0175;    // [0.001, 1] of one reading; 1 deg: noise 0.3-1 deg, guess of the data sheet
+  double drift_per_turn = 0.01;         // [0, 1] odometry's yaw error per rad turned; guess
+  double drift_rad_per_sqrt_s = 0.0003; // [0, 1] and over time; guess
+};
+
+template <class Visitor>
+void Visit(Visitor& v, HeadingConfig& c) {
+  v("compass_sigma_rad", c.compass_sigma_rad, {0.001, 1.0});
+  v("drift_per_turn", c.drift_per_turn, {0.0, 1.0});
+  v("drift_rad_per_sqrt_s", c.drift_rad_per_sqrt_s, {0.0, 1.0});
+}
+
+class Heading {
+ public:
+  explicit Heading(const HeadingConfig& config) : config_(config) {}
+  // A compass yaw and the odometry's yaw at the same instant.
+  void Update(Time stamp, double compass_yaw_rad, double odometry_yaw_rad);
+  double Yaw_rad(double odometry_yaw_rad) const { return WrapPi(odometry_yaw_rad + offset_rad_); }
+  double Sigma_rad() const;  // infinite before the first reading
+
+ private:
+  HeadingConfig config_;
+  bool started_ = false;
+  Time stamp_{0};
+  double offset_rad_ = 0.0, variance_ = 0.0, odometry_yaw_rad_ = 0.0;
+};
+
+}  // namespace merlin

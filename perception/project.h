@@ -1,0 +1,24 @@
+// From range image to points with their uncertainty.
+#pragma once
+
+#include <vector>
+
+#include "perception/filter/depth_filter.h"
+#include "perception/observation.h"
+#include "robot/types/depth_camera.h"
+#include "robot/types/se3.h"
+
+namespace merlin {
+
+// One sigma of a range [m] from the pixel's amplitude: small-error law of the two-tap, four-phase estimator,
+// c / (4 sqrt2 pi f) sqrt(N_s + 2 sigma_r^2) / (C N_s) with C N_s = amplitude (R. Lange, thesis, Siegen 2000).
+double RangeSigma_m(double amplitude_e, const DepthCameraSheet& sheet, const DepthSettings& settings);
+
+// Unit rays of all pixels in the optical frame, row-major.
+std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera);
+
+// Accepted pixels as points in the base frame; saturated ones as directions.
+void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, const std::vector<Eigen::Vector3f>& rays,
+                  const Pose& T_base_camera, Observation& observation);
+
+}  // namespace merlin

@@ -1,0 +1,101 @@
+#include "perception/odometry.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace merlin {
+namespace {
+
+using std::numbers::pi;
+
+CarDescription Car() {
+  CarDescription car;
+  car.wheelbase_m = 0.33;
+  car.track_m = 0.26;
+  car.wheel_radius_m = 0.055;
+  car.drivetrain.gear = 10.0;
+  car.drivetrain.encoder_counts_per_motor_turn = 512;
+  return car;
+}
+
+// Path of each wheel on a circle about a point on the rear axle's line, from plane geometry; mean over the rear middle's.
+double MeanOfFourWheels(double steering_rad) {
+  const double R = 0.33 / std::tan(steering_rad);
+  double sum = 0.0;
+  for (const double x : {0.0, 0.33})
+    for (const double y : {-0.13, 0.13}) sum += std::hypot(x, R - y);
+  return sum / 4.0 / R;
+}
+
+DriveState State(double time_s, double counts, double steering_rad) {
+  DriveState state;
+  state.stamp = FromSeconds(time_s);
+  state.encoder_counts = std::llround(counts);
+  state.steering_rad = steering_rad;
+  return state;
+}
+
+TEST(WheelMean, IsOneStraightAheadAndFollowsTheGeometryInATurn) {
+  EXPECT_DOUBLE_EQ(WheelMeanRatio(0.33, 0.26, 0.0), 1.0);
+  for (const double deg : {1e-6, 1.0, 5.0, 10.0, 25.0}) {
+    const double steering_rad = deg * pi / 180.0;
+    EXPECT_NEAR(WheelMeanRatio(0.33, 0.26, steering_rad), MeanOfFourWheels(steering_rad), 1e-6) << deg;
+    EXPECT_DOUBLE_EQ(WheelMeanRatio(0.33, 0.26, -steering_rad), WheelMeanRatio(0.33, 0.26, steering_rad));
+  }
+  EXPECT_NEAR(WheelMeanRatio(0.33, 0.26, 10.0 * pi / 180.0), 1.008, 5e-4);
+}
+
+TEST(Odometry, KnowsNothingBeforeTheFirstState) { EXPECT_FALSE(Odometry(Car()).At(Time{0})); }
+
+TEST(Odometry, DrivesStraightForthAndBack) {
+  Odometry odometry(Car());
+  const double per_metre = 1.0 / Car().MetresPerCount();
+  odometry.Update(State(0.0, 1000, 0.0));
+  odometry.Update(State(0.1, 1000 + 2.0 * per_metre, 0.0));
+  EXPECT_NEAR(odometry.At(FromSeconds(0.1))->translation().x(), 2.0, 1e-4);
+  EXPECT_NEAR(odometry.At(FromSeconds(0.05))->translation().x(), 1.0, 1e-4);
+  odometry.Update(State(0.2, 1000, 0.0));
+  EXPECT_NEAR(odometry.At(FromSeconds(0.2))->translation().norm(), 0.0, 1e-4);
+}
+
+TEST(Odometry, ClosesAFullCircleEitherWayRound) {
+  for (const double deg : {-20.0, 20.0}) {
+    Odometry odometry(Car());
+    const double steering_rad = deg * pi / 180.0;
+    const double R = 0.33 / std::tan(std::abs(steering_rad));
+    const double counts = 2.0 * pi * R * MeanOfFourWheels(std::abs(steering_rad)) / Car().MetresPerCount();
+    constexpr int kSteps = 200;
+    Pose half = Pose::Identity();
+    for (int i = 0; i <= kSteps; ++i) {
+      odometry.Update(State(0.02 * i, counts * i / kSteps, steering_rad));
+      if (i == kSteps / 2) half = *odometry.At(FromSeconds(0.02 * i));
+    }
+    const Pose end = *odometry.At(FromSeconds(0.02 * kSteps));
+    EXPECT_NEAR(half.translation().y(), std::copysign(2.0 * R, deg), 1e-3);  // across the circle, on the side steered to
+    EXPECT_NEAR(std::abs(Yaw(half)), pi, 1e-3);
+    EXPECT_LT(end.translation().norm(), 1e-3);
+    EXPECT_NEAR(Yaw(end), 0.0, 1e-3);
+  }
+}
+
+TEST(Heading, IsUnknownBeforeTheFirstReading) { EXPECT_TRUE(std::isinf(Heading({}).Sigma_rad())); }
+
+TEST(Heading, AveragesReadingsAtRestAsIndependentOnesAcrossPi) {
+  HeadingConfig config;
+  config.drift_rad_per_sqrt_s = 0.0;
+  Heading heading(config);
+  for (int i = 0; i < 100; ++i) heading.Update(FromSeconds(0.1 * i), WrapPi(pi + (i % 2 ? 0.01 : -0.01)), 0.5);
+  EXPECT_NEAR(std::abs(heading.Yaw_rad(0.5)), pi, 2e-3);
+  EXPECT_NEAR(heading.Sigma_rad(), config.compass_sigma_rad / 10.0, 1e-6);  // sigma / sqrt(n)
+}
+
+TEST(Heading, FollowsTheWheelsBetweenReadings) {
+  Heading heading({});
+  heading.Update(Time{0}, 1.0, 0.2);
+  EXPECT_NEAR(heading.Yaw_rad(0.2 + 0.7), 1.7, 1e-12);
+}
+
+}  // namespace
+}  // namespace merlin

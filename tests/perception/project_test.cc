@@ -1,0 +1,96 @@
+#include "perception/project.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "perception/fuse.h"
+
+namespace merlin {
+namespace {
+
+DepthCameraSheet Sheet() {
+  DepthCameraSheet sheet;
+  sheet.camera = {.width = 3, .height = 3, .fx_px = 1.0, .fy_px = 1.0, .cx_px = 1.0, .cy_px = 1.0};  // rays at 45 deg
+  sheet.signal_e_m2_per_us = 2000.0;
+  sheet.contrast_at_20mhz = 0.45;
+  sheet.contrast_corner_hz = 30e6;
+  sheet.read_noise_e = 200.0;
+  return sheet;
+}
+
+// Optical z is the body's x, optical x its -y, optical y its -z.
+Pose LookingAhead(double x_m, double z_m) {
+  Pose T = Pose::Identity();
+  T.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  T.translation() = Eigen::Vector3d(x_m, 0.0, z_m);
+  return T;
+}
+
+FilteredDepth Depth() {
+  FilteredDepth depth;
+  depth.frame.width = depth.frame.height = 3;
+  depth.frame.range_m.assign(9, 2.0f);
+  depth.frame.amplitude.assign(9, 50'000.0f);
+  depth.frame.flags.assign(9, 0);
+  depth.reasons.assign(9, Rejection::kInvalid);
+  return depth;
+}
+
+TEST(Project, PutsPixelsWhereTheirRaysPointInTheBodyFrame) {
+  FilteredDepth depth = Depth();
+  depth.reasons[4] = Rejection::kNone;  // centre
+  depth.reasons[3] = Rejection::kNone;  // left of it
+  depth.reasons[7] = Rejection::kNone;  // below it
+  Observation observation;
+  ProjectDepth(depth, Sheet(), PixelRays(Sheet().camera), LookingAhead(0.3, 0.35), observation);
+  ASSERT_EQ(observation.points_base.size(), 3u);
+  const float s = std::sqrt(2.0f);  // 2 m along a ray at 45 deg
+  EXPECT_TRUE(observation.points_base[0].position.isApprox(Eigen::Vector3f(0.3f + s, s, 0.35f), 1e-6f));
+  EXPECT_TRUE(observation.points_base[1].position.isApprox(Eigen::Vector3f(2.3f, 0.0f, 0.35f), 1e-6f));
+  EXPECT_TRUE(observation.points_base[2].position.isApprox(Eigen::Vector3f(0.3f + s, 0.0f, 0.35f - s), 1e-6f));
+  EXPECT_TRUE(observation.camera_base.isApprox(Eigen::Vector3f(0.3f, 0.0f, 0.35f), 1e-6f));
+}
+
+TEST(Project, KeepsSaturatedPixelsAsDirections) {
+  FilteredDepth depth = Depth();
+  depth.reasons[4] = Rejection::kSaturated;
+  Observation observation;
+  ProjectDepth(depth, Sheet(), PixelRays(Sheet().camera), LookingAhead(0.3, 0.35), observation);
+  EXPECT_TRUE(observation.points_base.empty());
+  ASSERT_EQ(observation.saturated_base.size(), 1u);
+  EXPECT_TRUE(observation.saturated_base[0].isApprox(Eigen::Vector3f::UnitX(), 1e-6f));
+}
+
+// Figures computed by hand from c / (4 sqrt2 pi f) = 0.844 m at 20 MHz and sqrt(N + 2 200^2) / (0.45 N): albedo 0.5, 1 ms.
+TEST(RangeSigma, GivesTheHandComputedMillimetres) {
+  for (const auto& [distance_m, sigma_mm] : {std::pair(1.0, 1.9), {2.0, 4.3}, {3.0, 7.4}, {4.0, 11.3}, {5.0, 16.2}, {7.0, 29.1}}) {
+    const double amplitude_e = 0.45 * 2000.0 * 0.5 * 1000.0 / (distance_m * distance_m);
+    EXPECT_NEAR(1e3 * RangeSigma_m(amplitude_e, Sheet(), {1e-3, 20e6}), sigma_mm, 0.03 * sigma_mm + 0.05) << distance_m;
+  }
+}
+
+ColorFrame Picture() {  // 4 x 2, the blue channel counts the pixels
+  ColorFrame frame;
+  frame.width = 4;
+  frame.height = 2;
+  for (std::uint8_t i = 0; i < 8; ++i) frame.bgr.insert(frame.bgr.end(), {i, 100, 200});
+  return frame;
+}
+
+TEST(Fuse, ColorsThePointThatFallsOnAPixelAndNoOther) {
+  const CameraModel camera{.width = 4, .height = 2, .fx_px = 2.0, .fy_px = 2.0, .cx_px = 1.0, .cy_px = 0.0};
+  std::vector<Point> points(4);
+  points[0].position = {2.0f, 1.0f, 2.0f};    // u = 2 * 1 + 1 = 3, v = 1: the last pixel
+  points[1].position = {10.0f, 0.0f, 2.0f};   // right of the picture
+  points[2].position = {0.0f, 0.0f, -2.0f};   // behind the camera
+  points[3].position = {0.0f, 0.0f, 0.0f};    // in it
+  ColorPoints(points, Picture(), camera, Pose::Identity());
+  EXPECT_TRUE(points[0].has_color);
+  EXPECT_EQ(points[0].bgr, (std::array<std::uint8_t, 3>{7, 100, 200}));
+  for (int i = 1; i < 4; ++i) EXPECT_FALSE(points[i].has_color) << i;
+}
+
+}  // namespace
+}  // namespace merlin
