@@ -1,1 +1,170 @@
+#include "slam/map/voxel_map.h"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace merlin {
+namespace {
+
+std::size_t Hash(const std::array<std::int32_t, 3>& cell) {
+  // Multiply by large odd numbers and mix (Teschner et al. 2003, with a final avalanche step).
+  std::uint64_t h = static_cast<std::uint32_t>(cell[0]) * 0x9E3779B185EBCA87ull ^
+                    static_cast<std::uint32_t>(cell[1]) * 0xC2B2AE3D27D4EB4Full ^
+                    static_cast<std::uint32_t>(cell[2]) * 0x165667B19E3779F9ull;
+  h ^= h >> 29;
+  h *= 0xBF58476D1CE4E5B9ull;
+  return static_cast<std::size_t>(h ^ (h >> 32));
+}
+
+template <class Function>
+void ForNeighbours(const std::array<std::int32_t, 3>& cell, Function function) {
+  for (int dx = -1; dx <= 1; ++dx)
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dz = -1; dz <= 1; ++dz) function(std::array<std::int32_t, 3>{cell[0] + dx, cell[1] + dy, cell[2] + dz});
+}
+
+}  // namespace
+
+VoxelMap::Cell VoxelMap::CellOf(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d cell = (p / config_.voxel_m).array().floor();
+  return {static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()), static_cast<std::int32_t>(cell.z())};
+}
+
+Eigen::Vector3d VoxelMap::Centre(const Cell& cell) const {
+  return (Eigen::Vector3d(cell[0], cell[1], cell[2]).array() + 0.5) * config_.voxel_m;
+}
+
+std::int32_t VoxelMap::Find(const Cell& cell) const {
+  if (slots_.empty()) return -1;
+  for (std::size_t slot = Hash(cell) & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1)) {
+    const std::int32_t index = slots_[slot];
+    if (index < 0 || voxels_[index].cell == cell) return index;
+  }
+}
+
+Voxel& VoxelMap::FindOrAdd(const Cell& cell) {
+  if (const std::int32_t index = Find(cell); index >= 0) return voxels_[index];
+  voxels_.emplace_back().cell = cell;
+  if (2 * voxels_.size() > slots_.size()) {
+    Rehash(std::max<std::size_t>(1024, 4 * voxels_.size()));
+  } else {
+    std::size_t slot = Hash(cell) & (slots_.size() - 1);
+    while (slots_[slot] >= 0) slot = (slot + 1) & (slots_.size() - 1);
+    slots_[slot] = static_cast<std::int32_t>(voxels_.size()) - 1;
+  }
+  return voxels_.back();
+}
+
+void VoxelMap::Rehash(std::size_t slots) {
+  std::size_t size = 1;
+  while (size < slots) size *= 2;
+  slots_.assign(size, -1);
+  for (std::size_t i = 0; i < voxels_.size(); ++i) {
+    std::size_t slot = Hash(voxels_[i].cell) & (size - 1);
+    while (slots_[slot] >= 0) slot = (slot + 1) & (size - 1);
+    slots_[slot] = static_cast<std::int32_t>(i);
+  }
+}
+
+void VoxelMap::Insert(std::span<const Point> points_base, const Pose& T_map_base, double path_m) {
+  std::vector<Cell> touched;
+  touched.reserve(points_base.size());
+  for (const Point& point : points_base) {
+    const Eigen::Vector3d p_map = T_map_base * point.position.cast<double>();
+    const Cell cell = CellOf(p_map);
+    Voxel& voxel = FindOrAdd(cell);
+    const double weight = 1e-4 / std::max<double>(point.sigma_m * point.sigma_m, 1e-6);
+    const Eigen::Vector3d d = p_map - Centre(cell);
+    ++voxel.count;
+    voxel.weight += weight;
+    voxel.sum += weight * d;
+    voxel.squares += weight * d * d.transpose();
+    voxel.last_seen_m = path_m;
+    voxel.mean = (Centre(cell) + voxel.sum / voxel.weight).cast<float>();
+    if (point.has_color) {
+      voxel.bgr_sum += Eigen::Vector3d(point.bgr[0], point.bgr[1], point.bgr[2]);
+      ++voxel.colored;
+    }
+    touched.push_back(cell);
+  }
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  for (const Cell& cell : touched) UpdateSurface(voxels_[Find(cell)]);
+}
+
+void VoxelMap::UpdateSurface(Voxel& voxel) const {
+  // Moments of the 27 voxels about this voxel's centre.
+  const Eigen::Vector3d centre = Centre(voxel.cell);
+  int count = 0;
+  double weight = 0.0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  ForNeighbours(voxel.cell, [&](const Cell& cell) {
+    const std::int32_t index = Find(cell);
+    if (index < 0) return;
+    const Voxel& other = voxels_[index];
+    const Eigen::Vector3d shift = Centre(cell) - centre;
+    count += other.count;
+    weight += other.weight;
+    sum += other.sum + other.weight * shift;
+    squares += other.squares + other.sum * shift.transpose() + shift * other.sum.transpose() +
+               other.weight * shift * shift.transpose();
+  });
+  voxel.normal.setZero();
+  if (count < config_.plane_points_min) return;
+  const Eigen::Matrix3d covariance = squares / weight - (sum / weight) * (sum / weight).transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  const Eigen::Vector3d values = solver.eigenvalues();
+  if (values(0) <= config_.flatness_max * values(1) && values(1) > 0.0)
+    voxel.normal = solver.eigenvectors().col(0).cast<float>();
+}
+
+void VoxelMap::ForgetBefore(double path_m) {
+  std::erase_if(voxels_, [path_m](const Voxel& voxel) { return voxel.last_seen_m < path_m; });
+  Rehash(std::max<std::size_t>(1024, 4 * voxels_.size()));
+}
+
+const Voxel* VoxelMap::Nearest(const Eigen::Vector3f& point_map) const {
+  const Voxel* nearest = nullptr;
+  float best = HUGE_VALF;
+  ForNeighbours(CellOf(point_map.cast<double>()), [&](const Cell& cell) {
+    const std::int32_t index = Find(cell);
+    if (index < 0 || !voxels_[index].has_normal()) return;
+    const float distance = (voxels_[index].mean - point_map).squaredNorm();
+    if (distance < best) {
+      best = distance;
+      nearest = &voxels_[index];
+    }
+  });
+  return nearest;
+}
+
+std::vector<Point> Downsample(std::span<const Point> points, double voxel_m) {
+  struct CellHash {
+    std::size_t operator()(const std::array<std::int32_t, 3>& cell) const { return Hash(cell); }
+  };
+  std::unordered_map<std::array<std::int32_t, 3>, std::size_t, CellHash> index_of;
+  index_of.reserve(points.size());
+  std::vector<Point> out;
+  std::vector<int> counts;
+  for (const Point& point : points) {
+    const Eigen::Vector3f cell = (point.position / static_cast<float>(voxel_m)).array().floor();
+    const auto [it, added] = index_of.try_emplace({static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
+                                                   static_cast<std::int32_t>(cell.z())},
+                                                  out.size());
+    if (added) {
+      out.push_back(point);
+      counts.push_back(1);
+    } else {
+      out[it->second].position += point.position;
+      ++counts[it->second];
+    }
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].position /= static_cast<float>(counts[i]);
+  return out;
+}
+
+}  // namespace merlin

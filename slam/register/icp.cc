@@ -1,1 +1,75 @@
+#include "slam/register/icp.h"
 
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace merlin {
+namespace {
+
+struct NormalEquations {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d b = Vector6d::Zero();
+  int inliers = 0;
+  double squares_m2 = 0.0;
+};
+
+NormalEquations Linearize(std::span<const Point> points_base, const Eigen::Vector3f& origin_base, const VoxelMap& map,
+                          const Pose& T_map_base, const IcpConfig& config) {
+  NormalEquations equations;
+  const Eigen::Isometry3f T = T_map_base.cast<float>();
+  const double kernel_m2 = config.kernel_m * config.kernel_m;
+  for (const Point& point : points_base) {
+    const Eigen::Vector3f p_map = T * point.position;
+    const Voxel* voxel = map.Nearest(p_map);
+    if (voxel == nullptr) continue;
+    const double residual_m = voxel->normal.dot(p_map - voxel->mean);
+    const double squared_m2 = residual_m * residual_m;
+    if (squared_m2 < 4.0 * kernel_m2) {
+      ++equations.inliers;
+      equations.squares_m2 += squared_m2;
+    }
+    // Range noise acts along the ray: seen at a grazing angle little of it is across the surface.
+    const Eigen::Vector3d n_base = (T.linear().transpose() * voxel->normal).cast<double>();
+    const Eigen::Vector3d p_base = point.position.cast<double>();
+    const double across = n_base.dot((p_base - origin_base.cast<double>()).normalized());
+    const double variance_m2 = std::pow(point.sigma_m * across, 2) + config.map_sigma_m * config.map_sigma_m;
+    const double robust = std::pow(kernel_m2 / (kernel_m2 + squared_m2), 2);
+    const double weight = config.independent_share * robust / variance_m2;
+    // d(T Exp(x) p) = R (x_t + x_r x p)
+    Vector6d jacobian;
+    jacobian << n_base, p_base.cross(n_base);
+    equations.H.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+    equations.b += weight * residual_m * jacobian;
+  }
+  equations.H = equations.H.selfadjointView<Eigen::Lower>();
+  return equations;
+}
+
+}  // namespace
+
+RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3f& origin_base, const VoxelMap& map,
+                        const PosePrior& prior, const IcpConfig& config) {
+  RegisterResult result;
+  result.T_map_base = prior.T_map_base;
+  bool small_step = false;
+  while (result.iterations < config.iterations_max && !small_step) {
+    ++result.iterations;
+    NormalEquations equations = Linearize(points_base, origin_base, map, result.T_map_base, config);
+    result.inliers = equations.inliers;
+    if (equations.inliers < config.inliers_min) return result;
+    result.inlier_share = static_cast<double>(equations.inliers) / static_cast<double>(points_base.size());
+    result.rms_m = std::sqrt(equations.squares_m2 / equations.inliers);
+    equations.H += prior.information;
+    equations.b += prior.information * Log(prior.T_map_base.inverse() * result.T_map_base);
+    const Eigen::LDLT<Matrix6d> solver(equations.H);
+    const Vector6d step = -solver.solve(equations.b);
+    if (solver.info() != Eigen::Success || !step.allFinite()) return result;
+    result.T_map_base = result.T_map_base * Exp(step);
+    result.covariance = solver.solve(Matrix6d::Identity());
+    small_step = step.norm() < config.step_converged;
+  }
+  result.converged = small_step && result.inlier_share >= config.inlier_share_min;
+  return result;
+}
+
+}  // namespace merlin

@@ -1,0 +1,55 @@
+// Registration of a frame against a map: point-to-plane ICP (Chen and Medioni 1992) with a Geman-McClure kernel, as a
+// maximum a posteriori estimate: a prior on the pose holds what the geometry does not (the axis of a bare corridor).
+#pragma once
+
+#include <span>
+
+#include "perception/observation.h"
+#include "robot/types/config.h"
+#include "robot/types/se3.h"
+#include "slam/map/voxel_map.h"
+
+namespace merlin {
+
+struct IcpConfig {
+  int iterations_max = 20;           // [1, 1000]
+  double step_converged = 2e-4;      // [0, 1] m and rad; a smaller step ends it
+  double kernel_m = 0.05;            // [0.001, 10] residual at which a pair's weight has fallen to a quarter; guess
+  double map_sigma_m = 0.01;         // [0, 1] of the map's surface; guess
+  double independent_share = 0.1;    // [0, 1] of pairs that carry information of their own: neighbours err alike; guess
+  int inliers_min = 60;              // [6, 1e9] pairs within two kernels, below: not converged
+  double inlier_share_min = 0.3;     // [0, 1] of all points, below: not converged
+};
+
+template <class Visitor>
+void Visit(Visitor& v, IcpConfig& c) {
+  v("iterations_max", c.iterations_max, {1.0, 1000.0});
+  v("step_converged", c.step_converged, {0.0, 1.0});
+  v("kernel_m", c.kernel_m, {0.001, 10.0});
+  v("map_sigma_m", c.map_sigma_m, {0.0, 1.0});
+  v("independent_share", c.independent_share, {0.0, 1.0});
+  v("inliers_min", c.inliers_min, {6.0, 1e9});
+  v("inlier_share_min", c.inlier_share_min, {0.0, 1.0});
+}
+
+// Where the pose is believed to be; information over (translation, rotation) in the base frame. Zero: no belief, only a guess.
+struct PosePrior {
+  Pose T_map_base = Pose::Identity();
+  Matrix6d information = Matrix6d::Zero();
+};
+
+struct RegisterResult {
+  Pose T_map_base = Pose::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  // over (translation, rotation) in the base frame
+  int inliers = 0;
+  double inlier_share = 0.0;
+  double rms_m = 0.0;  // of the inliers' point-to-plane distances
+  int iterations = 0;
+  bool converged = false;  // false: the pose is the last iterate and not to be trusted
+};
+
+// origin_base: where the rays of the points began. Starts at the prior's pose. Too few points or an empty map: not converged.
+RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3f& origin_base, const VoxelMap& map,
+                        const PosePrior& prior, const IcpConfig& config);
+
+}  // namespace merlin

@@ -1,0 +1,98 @@
+// Simultaneous localisation and mapping as one sentence: guess, register, keep key frames, map.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "perception/observation.h"
+#include "slam/map/occupancy_grid.h"
+#include "slam/map/voxel_map.h"
+#include "slam/register/icp.h"
+
+namespace merlin {
+
+struct SlamConfig {
+  VoxelMapConfig local;                 // the map a frame is registered against
+  IcpConfig icp;
+  OccupancyConfig occupancy;
+  double source_voxel_m = 0.08;         // [0.005, 1] frames are thinned to one point a voxel of this edge before registration
+  double local_length_m = 8.0;          // [0.5, 1000] driven length after which an unseen voxel leaves the local map
+  double keyframe_distance_m = 0.1;     // [0, 10]
+  double keyframe_angle_rad = 0.08;     // [0, 3.2]
+  double odometry_share = 0.02;         // [1e-4, 1] one sigma of odometry over the way driven; guess
+  double odometry_floor_m = 0.001;      // [1e-5, 1] and at least; guess
+  double yaw_floor_rad = 0.003;         // [1e-5, 1] the heading's sigma is not believed below this; guess
+  double floor_sigma_m = 0.01;          // [1e-4, 10] the car stays on a plane: height...
+  double tilt_sigma_rad = 0.005;        // [1e-4, 3] ...roll and pitch; guess
+  double start_sigma_rad = 0.003;       // [1e-4, 10] mapping waits until the heading is known this well,...
+  double start_wait_s = 2.0;            // [0, 100] ...but no longer than this
+  double map_voxel_m = 0.04;            // [0.005, 1] of the map that is written
+  int map_points_min = 2;               // [1, 1000] points a voxel of it needs
+};
+
+template <class Visitor>
+void Visit(Visitor& v, SlamConfig& c) {
+  v("local", c.local);
+  v("icp", c.icp);
+  v("occupancy", c.occupancy);
+  v("source_voxel_m", c.source_voxel_m, {0.005, 1.0});
+  v("local_length_m", c.local_length_m, {0.5, 1000.0});
+  v("keyframe_distance_m", c.keyframe_distance_m, {0.0, 10.0});
+  v("keyframe_angle_rad", c.keyframe_angle_rad, {0.0, 3.2});
+  v("odometry_share", c.odometry_share, {1e-4, 1.0});
+  v("odometry_floor_m", c.odometry_floor_m, {1e-5, 1.0});
+  v("yaw_floor_rad", c.yaw_floor_rad, {1e-5, 1.0});
+  v("floor_sigma_m", c.floor_sigma_m, {1e-4, 10.0});
+  v("tilt_sigma_rad", c.tilt_sigma_rad, {1e-4, 3.0});
+  v("start_sigma_rad", c.start_sigma_rad, {1e-4, 10.0});
+  v("start_wait_s", c.start_wait_s, {0.0, 100.0});
+  v("map_voxel_m", c.map_voxel_m, {0.005, 1.0});
+  v("map_points_min", c.map_points_min, {1.0, 1000.0});
+}
+
+struct Keyframe {
+  Time stamp{0};
+  Pose T_map_base = Pose::Identity();
+  std::vector<Point> points_base;
+};
+
+struct MapPose {
+  Time stamp{0};
+  Pose T_map_base = Pose::Identity();
+};
+
+class Slam {
+ public:
+  explicit Slam(const SlamConfig& config);
+
+  // The pose at the observation's stamp; nothing while mapping waits for the heading to settle at the start.
+  // The map frame: origin where mapping began, axes along the world's as the compass has them.
+  std::optional<Pose> Update(const Observation& observation);
+
+  const RegisterResult& last() const { return last_; }  // how well the last frame fitted
+  int lost_frames() const { return lost_frames_; }      // frames in a row that did not; odometry carried the pose
+  const VoxelMap& local_map() const { return local_; }
+  const OccupancyGrid& occupancy() const { return occupancy_; }
+  const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  const std::vector<MapPose>& trajectory() const { return trajectory_; }  // one pose a frame, as the car drove by it
+  double path_m() const { return path_m_; }
+
+  // The whole map: voxels with at least map_points_min points, from all key frames.
+  VoxelMap BuildMap() const;
+
+ private:
+  PosePrior Predict(const Observation& observation) const;
+
+  SlamConfig config_;
+  VoxelMap local_;
+  OccupancyGrid occupancy_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<MapPose> trajectory_;
+  RegisterResult last_;
+  int lost_frames_ = 0;
+  double path_m_ = 0.0, pruned_at_m_ = 0.0;
+  std::optional<Time> first_stamp_;
+  Pose T_odom_last_ = Pose::Identity();
+};
+
+}  // namespace merlin
