@@ -1,0 +1,90 @@
+// The pilot: follows a corridor in its middle, turns where it turns, stops before what stands in the way, and stops for
+// good when its laps are done. It knows no plan of the room, only what the sensors gave.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "autonomy/avoid.h"
+#include "autonomy/corridor.h"
+#include "perception/observation.h"
+#include "robot/types/measurements.h"
+#include "slam/slam.h"
+
+namespace merlin {
+
+struct PilotConfig {
+  double speed_m_s = 0.5;            // [0.05, 2] along a corridor; the thesis' indoor mapping speed
+  double turn_speed_m_s = 0.4;       // [0.05, 2] around a corner
+  double look_ahead_m = 0.9;         // [0.2, 5] of pure pursuit; longer is smoother, shorter truer
+  double turn_radius_m = 0.9;        // [0.3, 5] of the arc around a corner; the car's smallest is 0.71
+  double decide_m = 2.6;             // [0.5, 7] distance to the end wall at which it decides where to turn
+  double lap_radius_m = 0.4;         // [0.05, 5] a lap ends this close to where it began; side-ways four times as far
+  double command_valid_s = 0.3;      // [0.02, 5] the car brakes by itself when no command follows
+  int lost_frames_max = 20;          // [1, 1000] frames in a row without registration, then it stands until one fits
+  AvoidConfig avoid;
+  CorridorConfig corridor;
+};
+
+template <class Visitor>
+void Visit(Visitor& v, PilotConfig& c) {
+  v("speed_m_s", c.speed_m_s, {0.05, 2.0});
+  v("turn_speed_m_s", c.turn_speed_m_s, {0.05, 2.0});
+  v("look_ahead_m", c.look_ahead_m, {0.2, 5.0});
+  v("turn_radius_m", c.turn_radius_m, {0.3, 5.0});
+  v("decide_m", c.decide_m, {0.5, 7.0});
+  v("lap_radius_m", c.lap_radius_m, {0.05, 5.0});
+  v("command_valid_s", c.command_valid_s, {0.02, 5.0});
+  v("lost_frames_max", c.lost_frames_max, {1.0, 1000.0});
+  v("avoid", c.avoid);
+  v("corridor", c.corridor);
+}
+
+struct Task {
+  std::string behavior = "follow_corridor";  // the only one yet
+  int laps = 0;                              // [0, 1000] closed rounds after which it stops; 0: drive on
+};
+
+template <class Visitor>
+void Visit(Visitor& v, Task& c) {
+  v("behavior", c.behavior);
+  v("laps", c.laps, {0.0, 1000.0});
+}
+
+// The names a task's behavior may have.
+std::vector<std::string> BehaviorNames();
+
+struct Decision {
+  DriveCommand command;
+  bool done = false;        // the task is finished: the command is to stand
+  std::string doing;        // "follows the corridor", "turns left", "waits for an obstacle", ...
+};
+
+class Pilot {
+ public:
+  Pilot(const CarDescription& car, const Task& task, const PilotConfig& config);
+  // One decision a depth frame. T_map_base: of this observation, if there is one.
+  Decision Decide(const Observation& observation, const std::optional<Pose>& T_map_base, const Slam& slam);
+
+ private:
+  void CountLaps(const Pose& T_map_base);
+  void FollowCorridor(const Pose& T_map_base, const Slam& slam);
+  void PlanTurn(const Corridor& corridor, const Pose& T_map_base, double side);
+  bool TurnIsOver(const Pose& T_map_base) const;
+  DriveCommand Command(double speed_m_s, double steering_rad) const;
+  double PursuitSteering_rad(const std::vector<Eigen::Vector2d>& path_base) const;
+
+  CarDescription car_;
+  Task task_;
+  PilotConfig config_;
+  Avoid avoid_;
+  std::optional<Pose> T_map_start_;
+  double last_yaw_rad_ = 0.0, turned_rad_ = 0.0;  // since the start, unwrapped
+  int laps_ = 0;
+  CorridorHint hint_;
+  std::vector<Eigen::Vector2d> path_map_;         // what it means to drive, from about the car onwards
+  std::optional<double> turn_side_;               // +1 left, -1 right, while it turns
+};
+
+}  // namespace merlin
