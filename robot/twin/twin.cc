@@ -1,1 +1,232 @@
+#include "robot/twin/twin.h"
 
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot/twin/outbox.h"
+#include "robot/twin/worker.h"
+#include "sim/color_camera.h"
+#include "sim/ray_scene.h"
+
+namespace merlin {
+namespace {
+
+// The k-th sampling instant of a rate, on the grid of physics steps.
+class Schedule {
+ public:
+  explicit Schedule(double rate_hz) : period_s_(1.0 / rate_hz) {}
+  bool Due(Time now) {
+    const Time next = FromSeconds(static_cast<double>(count_) * period_s_);
+    if (now < next) return false;
+    ++count_;
+    return true;
+  }
+
+ private:
+  double period_s_;
+  std::uint64_t count_ = 0;
+};
+
+class TwinDepth final : public DepthCamera {
+ public:
+  TwinDepth(const TwinOptions& options, const sim::World& world, Worker& worker)
+      : info_{options.depth.sheet, options.world.car.T_base_depth, options.depth.rate_hz},
+        camera_(options.depth.sheet, options.depth.effects, options.seed),
+        scene_(world.model(), CarBodies(world)),
+        albedo_(sim::GeomAlbedos(world.model(), options.materials)),
+        worker_(worker),
+        schedule_(options.depth.rate_hz),
+        outbox_(FromSeconds(options.depth.sheet.latency_s)) {
+    Configure(options.depth.settings);
+  }
+
+  void Sample(const sim::World& world) {
+    now_ = world.Now();
+    if (!schedule_.Due(now_)) return;
+    auto poses = sim::RayScene::Snapshot(world.model(), world.data());
+    const Pose T_world_camera = world.T_world_base() * info_.T_base_camera;
+    outbox_.Put(now_, worker_.Do([this, poses = std::move(poses), T_world_camera, settings = settings_, stamp = now_,
+                                  index = index_++] {
+      scene_.Update(poses);
+      return camera_.Expose(scene_, albedo_, T_world_camera, settings, stamp, index);
+    }));
+  }
+
+  const DepthCameraInfo& Info() const override { return info_; }
+  void Configure(const DepthSettings& settings) override {
+    CheckSettings(info_.sheet, settings);
+    settings_ = settings;
+  }
+  std::optional<DepthFrame> Poll() override { return outbox_.Take(now_); }
+  DeviceStatus Status() const override { return outbox_.status(); }
+
+ private:
+  DepthCameraInfo info_;
+  sim::TofCamera camera_;
+  sim::RayScene scene_;  // touched by the worker's jobs only
+  std::vector<double> albedo_;
+  Worker& worker_;
+  Schedule schedule_;
+  Outbox<DepthFrame> outbox_;
+  DepthSettings settings_;
+  Time now_{0};
+  std::uint64_t index_ = 0;
+};
+
+class TwinColor final : public ColorCamera {
+ public:
+  TwinColor(const TwinOptions& options, const sim::World& world, Worker& worker)
+      : info_{options.color->sheet, options.world.car.T_base_color, options.color->rate_hz},
+        seed_(options.seed),
+        model_(world.model()),
+        worker_(worker),
+        schedule_(options.color->rate_hz),
+        outbox_(FromSeconds(options.color->sheet.latency_s)) {
+    CameraModel& camera = info_.sheet.camera;  // the simulated lens has no distortion yet, and says so
+    camera.k1 = camera.k2 = camera.p1 = camera.p2 = 0.0;
+    // GL belongs to the thread that draws.
+    worker_.Do([this, gl = options.color->gl] {
+             renderer_ = std::make_unique<sim::Renderer>(model_, info_.sheet.camera, gl);
+           }).get();
+  }
+  ~TwinColor() override {
+    worker_.Do([this] { renderer_.reset(); }).get();
+  }
+
+  void Sample(const sim::World& world) {
+    now_ = world.Now();
+    if (!schedule_.Due(now_)) return;
+    auto snapshot = std::make_shared<sim::RenderSnapshot>(model_);
+    snapshot->Take(model_, world.data(), world.T_world_base() * info_.T_base_camera, info_.sheet.camera);
+    outbox_.Put(now_, worker_.Do([this, snapshot, stamp = now_, index = index_++] {
+      const CameraModel& camera = info_.sheet.camera;
+      ColorFrame frame{stamp, index, camera.width, camera.height, {}};
+      frame.bgr.resize(3 * static_cast<std::size_t>(camera.width) * camera.height);
+      renderer_->Draw(*snapshot, frame.bgr);
+      sim::AddColorNoise(frame.bgr, info_.sheet, seed_, index);
+      return frame;
+    }));
+  }
+
+  const std::string& gl_name() const { return renderer_->name(); }
+  const ColorCameraInfo& Info() const override { return info_; }
+  std::optional<ColorFrame> Poll() override { return outbox_.Take(now_); }
+  DeviceStatus Status() const override { return outbox_.status(); }
+
+ private:
+  ColorCameraInfo info_;
+  std::uint64_t seed_;
+  const mjModel* model_;
+  std::unique_ptr<sim::Renderer> renderer_;
+  Worker& worker_;
+  Schedule schedule_;
+  Outbox<ColorFrame> outbox_;
+  Time now_{0};
+  std::uint64_t index_ = 0;
+};
+
+class TwinCompass final : public Compass {
+ public:
+  explicit TwinCompass(const TwinOptions& options)
+      : config_(options.compass->config), seed_(options.seed), schedule_(options.compass->rate_hz) {}
+
+  void Sample(const sim::World& world) {
+    now_ = world.Now();
+    if (schedule_.Due(now_)) outbox_.Put(now_, sim::ReadCompass(world.T_world_base(), config_, seed_, now_, index_++));
+  }
+  std::optional<CompassReading> Poll() override { return outbox_.Take(now_); }
+  DeviceStatus Status() const override { return outbox_.status(); }
+
+ private:
+  sim::CompassConfig config_;
+  std::uint64_t seed_;
+  Schedule schedule_;
+  Outbox<CompassReading> outbox_{Duration(0)};
+  Time now_{0};
+  std::uint64_t index_ = 0;
+};
+
+class TwinDrive final : public Drive {
+ public:
+  TwinDrive(sim::World& world, double rate_hz) : world_(world), schedule_(rate_hz) {}
+
+  void Sample() {
+    if (schedule_.Due(world_.Now()))
+      outbox_.Put(world_.Now(), world_.drive().Read(world_.model(), world_.data(), world_.Now()));
+  }
+  void Send(const DriveCommand& command) override { world_.drive().Send(command, world_.Now()); }
+  std::optional<DriveState> Poll() override { return outbox_.Take(world_.Now()); }
+  DeviceStatus Status() const override { return outbox_.status(); }
+
+ private:
+  sim::World& world_;
+  Schedule schedule_;
+  Outbox<DriveState> outbox_{Duration(0)};
+};
+
+}  // namespace
+
+struct Twin::Impl final : public Clock {
+  explicit Impl(const TwinOptions& options)
+      : end(options.end), world(options.world), depth_worker(options.threads > 1), color_worker(options.threads > 2),
+        depth(options, world, depth_worker), drive(world, options.drive_rate_hz) {
+    // With two threads the cameras share one beside the caller's.
+    if (options.color) color.emplace(options, world, options.threads > 2 ? color_worker : depth_worker);
+    if (options.compass) compass.emplace(options);
+    Sample();
+  }
+
+  void Sample() {
+    depth.Sample(world);
+    if (color) color->Sample(world);
+    if (compass) compass->Sample(world);
+    drive.Sample();
+  }
+
+  Time Now() const override { return world.Now(); }
+  bool WaitUntil(Time time) override {
+    while (world.Now() < time) {
+      if (world.Now() >= end) return false;
+      world.Step();
+      if (on_step) on_step(world);
+      Sample();
+    }
+    return true;
+  }
+
+  Time end;
+  sim::World world;
+  Worker depth_worker, color_worker;
+  TwinDepth depth;
+  std::optional<TwinColor> color;
+  std::optional<TwinCompass> compass;
+  TwinDrive drive;
+  std::function<void(sim::World&)> on_step;
+  std::string no_gl;
+};
+
+std::vector<bool> CarBodies(const sim::World& world) {
+  std::vector<bool> bodies(static_cast<std::size_t>(world.model()->nbody), false);
+  for (int geom = 0; geom < world.model()->ngeom; ++geom)
+    if (world.IsCarGeom(geom)) bodies[static_cast<std::size_t>(world.model()->geom_bodyid[geom])] = true;
+  return bodies;
+}
+
+Twin::Twin(const TwinOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Twin::~Twin() = default;
+
+Robot Twin::robot() {
+  return {.clock = impl_.get(),
+          .depth = &impl_->depth,
+          .color = impl_->color ? &*impl_->color : nullptr,
+          .compass = impl_->compass ? &*impl_->compass : nullptr,
+          .drive = &impl_->drive};
+}
+sim::World& Twin::world() { return impl_->world; }
+const sim::World& Twin::world() const { return impl_->world; }
+const std::string& Twin::gl_name() const { return impl_->color ? impl_->color->gl_name() : impl_->no_gl; }
+void Twin::OnStep(std::function<void(sim::World&)> callback) { impl_->on_step = std::move(callback); }
+
+}  // namespace merlin

@@ -1,0 +1,51 @@
+// Measurements on their way: in order of stamps, each handed out once, when its latency is over.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <future>
+#include <optional>
+#include <utility>
+
+#include "robot/hal/device_status.h"
+#include "robot/types/time.h"
+
+namespace merlin {
+
+template <class Measurement>
+class Outbox {
+ public:
+  explicit Outbox(Duration latency) : latency_(latency) {}
+
+  void Put(Time stamp, std::future<Measurement> measurement) {
+    waiting_.push_back({stamp, std::move(measurement)});
+    if (waiting_.size() <= kCapacity) return;
+    waiting_.pop_front();  // the reader is too slow
+    ++status_.missed;
+  }
+  void Put(Time stamp, Measurement measurement) {
+    std::promise<Measurement> promise;
+    promise.set_value(std::move(measurement));
+    Put(stamp, promise.get_future());
+  }
+  std::optional<Measurement> Take(Time now) {
+    if (waiting_.empty() || waiting_.front().stamp + latency_ > now) return std::nullopt;
+    Measurement measurement = waiting_.front().measurement.get();
+    waiting_.pop_front();
+    ++status_.delivered;
+    return measurement;
+  }
+  const DeviceStatus& status() const { return status_; }
+
+ private:
+  static constexpr std::size_t kCapacity = 16;
+  struct Waiting {
+    Time stamp;
+    std::future<Measurement> measurement;
+  };
+  Duration latency_;
+  std::deque<Waiting> waiting_;
+  DeviceStatus status_;
+};
+
+}  // namespace merlin

@@ -1,0 +1,73 @@
+// The simulated robot: joins the world and its sensors (sim) to the hardware abstraction layer (hal). The world waits
+// for the stack: Clock::WaitUntil steps it. A frame is taken at its exposure, computed beside the physics while its
+// latency lasts, and handed out when that is over: the same bits whatever the number of threads.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/hal/hal.h"
+#include "sim/compass.h"
+#include "sim/materials.h"
+#include "sim/renderer.h"
+#include "sim/tof/tof_camera.h"
+#include "sim/world.h"
+
+namespace merlin {
+
+struct TwinOptions {
+  struct Depth {
+    DepthCameraSheet sheet;
+    DepthSettings settings;
+    sim::TofEffects effects;
+    double rate_hz = 20.0;
+  };
+  struct Color {
+    ColorCameraSheet sheet;
+    double rate_hz = 10.0;
+    sim::Gl gl = sim::Gl::kAuto;  // not kOff
+  };
+  struct Compass {
+    sim::CompassConfig config;
+    double rate_hz = 10.0;
+  };
+
+  sim::WorldOptions world;
+  sim::Materials materials;
+  std::uint64_t seed = 1;
+  Depth depth;
+  std::optional<Color> color;
+  std::optional<Compass> compass;
+  double drive_rate_hz = 50.0;
+  Time end{0};      // WaitUntil returns false from here on
+  int threads = 2;  // 1: everything on the caller's; more: cameras beside it
+};
+
+// Which bodies are the car's: what its own cameras do not see.
+std::vector<bool> CarBodies(const sim::World& world);
+
+class Twin {
+ public:
+  // Throws InputError (room, car, start) and MachineError (no GL).
+  explicit Twin(const TwinOptions& options);
+  ~Twin();
+  Twin(const Twin&) = delete;
+  Twin& operator=(const Twin&) = delete;
+
+  Robot robot();
+  sim::World& world();
+  const sim::World& world() const;
+  const std::string& gl_name() const;  // empty without colour
+
+  // Called after every physics step, before sensors sample.
+  void OnStep(std::function<void(sim::World&)> callback);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace merlin
