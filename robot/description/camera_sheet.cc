@@ -1,1 +1,145 @@
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
 #include "robot/description/description.h"
+#include "robot/types/config.h"
+#include "robot/types/error.h"
+#include "robot/types/nearest_name.h"
+
+namespace merlin {
+namespace {
+
+// Takes numbers out of one file and collects every fault, so that a person mends them in one go.
+class SheetReader {
+ public:
+  explicit SheetReader(const std::filesystem::path& file) : file_(file.string()) {
+    try {
+      root_ = YAML::LoadFile(file_);
+    } catch (const YAML::BadFile&) {
+      throw InputError(file_, "cannot be read", "a camera's data sheet");
+    } catch (const YAML::Exception& error) {
+      throw InputError(fmt::format("{}:{}", file_, error.mark.line + 1), "broken YAML: " + error.msg);
+    }
+    if (!root_.IsMap()) throw InputError(file_, "no data sheet", "a map of keys");
+  }
+
+  double Number(const char* key, Range range) {
+    known_.insert(key);
+    const YAML::Node node = root_[key];
+    if (!node.IsDefined()) return Fault(root_, fmt::format("missing key '{}'", key));
+    return Check(node, key, range);
+  }
+  double NumberOr(const char* key, Range range, double value) {
+    known_.insert(key);
+    return root_[key].IsDefined() ? Number(key, range) : value;
+  }
+  std::vector<double> Numbers(const char* key, Range range) {
+    known_.insert(key);
+    const YAML::Node node = root_[key];
+    std::vector<double> numbers;
+    if (!node.IsDefined() || !node.IsSequence() || node.size() == 0) {
+      Fault(node.IsDefined() ? node : root_, fmt::format("'{}' must be a list of numbers", key));
+      return numbers;
+    }
+    for (const YAML::Node& item : node) numbers.push_back(Check(item, key, range));
+    return numbers;
+  }
+  std::string Text(const char* key) {
+    known_.insert(key);
+    const YAML::Node node = root_[key];
+    if (node.IsDefined() && node.IsScalar()) return node.Scalar();
+    Fault(root_, fmt::format("missing key '{}'", key));
+    return "";
+  }
+
+  // Call last. Throws for unknown keys and for all faults met before.
+  void Finish() {
+    for (const auto& entry : root_) {
+      const std::string key = entry.first.Scalar();
+      if (!known_.contains(key))
+        Fault(entry.first, fmt::format("unknown key '{}'; did you mean '{}'?", key, NearestName(key, known_)));
+    }
+    if (!faults_.empty()) throw InputError(faults_);
+  }
+
+ private:
+  double Check(const YAML::Node& node, const char* key, Range range) {
+    double number = std::nan("");
+    try {
+      number = node.as<double>();
+    } catch (const YAML::Exception&) {
+    }
+    if (number >= range.min && number <= range.max && std::isfinite(number)) return number;
+    return Fault(node, fmt::format("'{}': expected a number in [{:g}, {:g}], got '{}'", key, range.min, range.max,
+                                   node.IsScalar() ? node.Scalar() : "no single value"));
+  }
+  double Fault(const YAML::Node& node, const std::string& what) {
+    const YAML::Mark mark = node.Mark();
+    faults_ += (faults_.empty() ? "" : "\n") + (mark.is_null() ? file_ : fmt::format("{}:{}", file_, mark.line + 1)) + ": " + what;
+    return 1.0;  // so that what is computed from it stays finite until Finish throws
+  }
+
+  std::string file_, faults_;
+  YAML::Node root_;
+  std::set<std::string> known_;
+};
+
+double TanHalf(double angle_deg) { return std::tan(0.5 * angle_deg * std::numbers::pi / 180.0); }
+
+}  // namespace
+
+DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml) {
+  SheetReader in(yaml);
+  DepthCameraSheet sheet;
+  sheet.name = in.Text("name");
+  CameraModel& camera = sheet.camera;
+  camera.width = static_cast<int>(in.Number("width_px", {1, 4096}));
+  camera.height = static_cast<int>(in.Number("height_px", {1, 4096}));
+  camera.fx_px = 0.5 * camera.width / TanHalf(in.Number("fov_horizontal_deg", {0.1, 170}));
+  camera.fy_px = 0.5 * camera.height / TanHalf(in.Number("fov_vertical_deg", {0.1, 170}));
+  camera.cx_px = 0.5 * (camera.width - 1);
+  camera.cy_px = 0.5 * (camera.height - 1);
+  sheet.rate_max_hz = in.Number("rate_max_hz", {0.1, 1000});
+  sheet.latency_s = 1e-3 * in.Number("latency_ms", {0, 10000});
+  sheet.signal_e_m2_per_us = in.Number("signal_e_m2_per_us", {1e-3, 1e9});
+  sheet.contrast_at_20mhz = in.Number("contrast_at_20mhz", {1e-3, 1});
+  sheet.contrast_corner_hz = 1e6 * in.Number("contrast_corner_mhz", {0.1, 1e5});
+  sheet.read_noise_e = in.Number("read_noise_e", {0, 1e6});
+  sheet.full_well_e = in.Number("full_well_e", {1, 1e12});
+  sheet.readout_s = 1e-3 * in.Number("readout_ms", {0, 1000});
+  sheet.low_signal_amplitude_e = in.Number("low_signal_amplitude_e", {0, 1e9});
+  sheet.integration_min_s = 1e-6 * in.Number("integration_min_us", {0.1, 1e7});
+  sheet.integration_max_s = 1e-6 * in.Number("integration_max_us", {0.1, 1e7});
+  for (const double mhz : in.Numbers("frequencies_mhz", {0.1, 1000})) sheet.frequencies_hz.push_back(mhz * 1e6);
+  in.Finish();
+  return sheet;
+}
+
+ColorCameraSheet ReadColorCameraSheet(const std::filesystem::path& yaml) {
+  SheetReader in(yaml);
+  ColorCameraSheet sheet;
+  sheet.name = in.Text("name");
+  CameraModel& camera = sheet.camera;
+  camera.width = static_cast<int>(in.Number("width_px", {1, 8192}));
+  camera.height = static_cast<int>(in.Number("height_px", {1, 8192}));
+  camera.fx_px = in.Number("fx_px", {1, 1e6});
+  camera.fy_px = in.Number("fy_px", {1, 1e6});
+  camera.cx_px = in.Number("cx_px", {-1e5, 1e5});
+  camera.cy_px = in.Number("cy_px", {-1e5, 1e5});
+  camera.k1 = in.NumberOr("k1", {-10, 10}, 0.0);
+  camera.k2 = in.NumberOr("k2", {-10, 10}, 0.0);
+  camera.p1 = in.NumberOr("p1", {-1, 1}, 0.0);
+  camera.p2 = in.NumberOr("p2", {-1, 1}, 0.0);
+  sheet.rate_max_hz = in.Number("rate_max_hz", {0.1, 1000});
+  sheet.latency_s = 1e-3 * in.Number("latency_ms", {0, 10000});
+  sheet.read_noise_dn = in.Number("read_noise_dn", {0, 100});
+  sheet.gain_dn_per_e = in.Number("gain_dn_per_e", {0, 100});
+  in.Finish();
+  return sheet;
+}
+
+}  // namespace merlin
