@@ -1,0 +1,90 @@
+#include "scenarios/drive_loop.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace merlin {
+namespace {
+
+constexpr Duration kSilent = std::chrono::seconds(1);
+constexpr Duration kStandLimit = std::chrono::seconds(3);
+
+Rig RigOf(const Robot& robot, const CarDescription& car) {
+  const DepthCameraInfo& depth = robot.depth->Info();
+  Rig rig{car, depth.sheet, depth.T_base_camera, std::nullopt, Pose::Identity()};
+  if (robot.color != nullptr) {
+    rig.color = robot.color->Info().sheet;
+    rig.T_base_color = robot.color->Info().T_base_camera;
+  }
+  return rig;
+}
+
+}  // namespace
+
+DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception,
+                     const SlamConfig& slam, const Task& task, const PilotConfig& pilot)
+    : robot_(robot),
+      period_(FromSeconds(1.0 / robot.depth->Info().rate_hz)),
+      pipeline_(RigOf(robot, car), perception),
+      slam_(slam),
+      pilot_(car, task, pilot) {}
+
+bool DriveLoop::Tick(const LoopObserver& observer) {
+  while (auto state = robot_.drive->Poll()) last_drive_ = state->stamp, pipeline_.Add(*state);
+  while (robot_.compass != nullptr) {
+    const auto reading = robot_.compass->Poll();
+    if (!reading) break;
+    pipeline_.Add(*reading);
+  }
+  while (robot_.color != nullptr) {
+    auto frame = robot_.color->Poll();
+    if (!frame) break;
+    if (observer.color) observer.color(*frame);
+    pipeline_.Add(std::move(*frame));
+  }
+  bool done = false;
+  while (auto frame = robot_.depth->Poll()) {
+    last_depth_ = frame->stamp;
+    if (observer.depth) observer.depth(*frame);
+    const auto begin = std::chrono::steady_clock::now();
+    const auto observation = pipeline_.Process(std::move(*frame));
+    if (!observation) continue;
+    const auto T_map_base = slam_.Update(*observation);
+    const Decision decision = pilot_.Decide(*observation, T_map_base, slam_);
+    stack_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    robot_.drive->Send(decision.command);
+    done = decision.done;
+    if (observer.tick) observer.tick(robot_.clock->Now(), decision);
+  }
+  return done;
+}
+
+void DriveLoop::Stand() {
+  const Time begin = robot_.clock->Now();
+  std::optional<DriveState> before;
+  while (robot_.clock->Now() - begin < kStandLimit) {
+    robot_.drive->Send({.speed_m_s = 0.0, .steering_rad = 0.0, .valid_for = kSilent});
+    if (!robot_.clock->WaitUntil(robot_.clock->Now() + period_)) return;
+    std::optional<DriveState> state;
+    while (auto next = robot_.drive->Poll()) state = next;
+    if (state && before && state->encoder_counts == before->encoder_counts) return;
+    if (state) before = state;
+  }
+}
+
+LoopEnd DriveLoop::Run(const std::atomic<bool>& stop, const LoopObserver& observer) {
+  LoopEnd end = LoopEnd::kTimeUp;
+  last_depth_ = last_drive_ = robot_.clock->Now();
+  for (Time tick = robot_.clock->Now() + period_; robot_.clock->WaitUntil(tick); tick += period_) {
+    if (Tick(observer)) end = LoopEnd::kTaskDone;
+    else if (stop.load()) end = LoopEnd::kInterrupted;
+    else if (robot_.clock->Now() - std::min(last_depth_, last_drive_) > kSilent + period_) end = LoopEnd::kDeviceLost;
+    else continue;
+    Stand();
+    return end;
+  }
+  return end;
+}
+
+}  // namespace merlin

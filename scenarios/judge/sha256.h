@@ -1,0 +1,40 @@
+// SHA-256 of data that come piece by piece.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace merlin {
+
+class Sha256 {
+ public:
+  Sha256();  // throws MachineError where OpenSSL has no SHA-256
+  ~Sha256();
+  Sha256(Sha256&&) noexcept;
+  Sha256& operator=(Sha256&&) noexcept;
+
+  void Add(std::string_view bytes);
+  // Numbers as their bytes, little-endian.
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void Add(std::span<const Number> numbers) { AddLittleEndian(std::as_bytes(numbers)); }
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void Add(Number number) { Add(std::span<const Number>(&number, 1)); }
+
+  // 64 hexadecimal digits, lower case, of all added so far; more may be added afterwards.
+  std::string Hex() const;
+
+ private:
+  void AddLittleEndian(std::span<const std::byte> bytes);
+
+  struct Context;
+  std::unique_ptr<Context> context_;
+};
+
+}  // namespace merlin

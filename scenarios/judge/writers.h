@@ -1,0 +1,43 @@
+// The files a run leaves, as bytes, and how bytes become a file. Text is made first and written whole, so that what is
+// hashed is what is written.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/judge/map_point.h"
+#include "scenarios/judge/trajectory.h"
+
+namespace merlin {
+
+// Writes the file whole or not at all: into "<file>.part" first, then renamed. Throws MachineError (disk full, no
+// permission), and leaves no ".part" behind.
+void WriteFile(const std::filesystem::path& file, std::string_view bytes);
+
+// One line a pose: "stamp_s x y z qx qy qz qw", nine decimals, qw >= 0 (the TUM RGB-D benchmark's format).
+std::string ToTum(const Trajectory& trajectory);
+
+// Binary little-endian PLY: x y z (float) [m], red green blue (uchar).
+std::string ToPly(std::span<const MapPoint> map);
+
+// A map from above. cells: width x height, row by row, the row of the lowest y first; -1 unknown, else the chance [%]
+// that the cell is occupied, 0 to 100.
+struct GridMap {
+  int width = 0;
+  int height = 0;
+  double resolution_m = 0.05;
+  Eigen::Vector2d origin_m{0.0, 0.0};  // the grid's corner of lowest x and y, in the map's frame
+  std::vector<std::int8_t> cells{};
+};
+
+// The pair of files ROS 2's nav2_map_server reads: a picture (PGM, upper row the highest y; free 254, occupied 0,
+// unknown 205) and its description, which names the picture's file.
+std::string ToPgm(const GridMap& grid);
+std::string ToMapYaml(const GridMap& grid, const std::string& pgm_name);
+
+}  // namespace merlin

@@ -1,0 +1,138 @@
+#include "scenarios/judge_run.h"
+
+#include <algorithm>
+#include <span>
+
+#include "scenarios/judge/alignment.h"
+#include "scenarios/judge/laps.h"
+#include "scenarios/judge/map_picture.h"
+#include "scenarios/judge/map_size.h"
+#include "scenarios/judge/map_truth.h"
+#include "scenarios/judge/writers.h"
+#include "scenarios/versions.h"
+#include "sim/ray_scene.h"
+
+namespace merlin {
+namespace {
+
+std::vector<MapPoint> MapPoints(const Slam& slam, int points_min) {
+  std::vector<MapPoint> points;
+  const VoxelMap map = slam.BuildMap();
+  for (const Voxel& voxel : map.voxels()) {
+    if (voxel.count < points_min) continue;
+    MapPoint point{.p_map = voxel.mean};
+    if (voxel.colored > 0)
+      for (int c = 0; c < 3; ++c) point.rgb[c] = static_cast<std::uint8_t>(voxel.bgr_sum[2 - c] / voxel.colored + 0.5);
+    points.push_back(point);
+  }
+  return points;
+}
+
+GridMap ToGridMap(const OccupancyGrid& grid) {
+  GridMap map{grid.width(), grid.height(), grid.cell_m(), grid.origin_m(), {}};
+  for (int row = 0; row < grid.height(); ++row)
+    for (int column = 0; column < grid.width(); ++column) map.cells.push_back(static_cast<std::int8_t>(grid.At(column, row)));
+  return map;
+}
+
+Trajectory ToTrajectory(const std::vector<MapPose>& poses) {
+  Trajectory trajectory;
+  for (const MapPose& pose : poses) trajectory.push_back({pose.stamp, pose.T_map_base});
+  return trajectory;
+}
+
+TrueRange TrueRangeOf(const sim::RayScene& scene) {
+  return [&scene](const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world) -> double {
+    const Eigen::Vector3f direction = direction_world.cast<float>();
+    sim::RayHit hit;
+    scene.Cast(origin_world, std::span(&direction, 1), std::span(&hit, 1));
+    return hit.range_m < 0.0f ? HUGE_VAL : hit.range_m;
+  };
+}
+
+StackTimes Percentiles(std::vector<double> ms) {
+  if (ms.empty()) return {};
+  std::ranges::sort(ms);
+  const auto at = [&ms](double share) { return ms[static_cast<std::size_t>(share * static_cast<double>(ms.size() - 1))]; };
+  return {at(0.5), at(0.99), ms.back()};
+}
+
+std::string HashOf(const std::string& bytes) {
+  Sha256 hash;
+  hash.Add(bytes);
+  return hash.Hex();
+}
+
+}  // namespace
+
+void Evidence::Add(const DepthFrame& frame) {
+  ++depth_frames;
+  depth.Add(frame.stamp.count());
+  depth.Add(std::span<const float>(frame.range_m));
+  depth.Add(std::span<const float>(frame.amplitude));
+  depth.Add(std::span<const float>(frame.intensity));
+  depth.Add(std::span<const std::uint8_t>(frame.flags));
+}
+
+void Evidence::Add(const ColorFrame& frame) {
+  ++color_frames;
+  color.Add(frame.stamp.count());
+  color.Add(std::span<const std::uint8_t>(frame.bgr));
+}
+
+RunResult JudgeRun(const std::string& name, const Scenario& scenario, Twin& twin, const Truth& truth, const DriveLoop& loop,
+                   const Evidence& evidence, OutputFolder& folder) {
+  RunResult result{.scenario = name, .seed = scenario.seed, .versions = Versions()};
+  Metrics& metrics = result.metrics;
+  const Slam& slam = loop.slam();
+  const Outline outline = twin.world().plan_xy_m();
+  const Trajectory estimate = ToTrajectory(slam.trajectory());
+  const std::vector<MapPoint> map = MapPoints(slam, scenario.slam.map_points_min);
+
+  metrics.distance_m = PathLength_m(truth.trajectory());
+  metrics.laps = CountLaps(truth.trajectory(), outline);
+  metrics.collisions = truth.collisions();
+  metrics.obstacle_gap_m = truth.obstacle_gap_m();
+  metrics.obstacle_stop_s = truth.obstacle_stop_s();
+  metrics.depth_frames = evidence.depth_frames;
+  metrics.color_frames = evidence.color_frames;
+  const Robot robot = twin.robot();
+  metrics.frames_dropped = static_cast<std::int64_t>(robot.depth->Status().missed + (robot.color ? robot.color->Status().missed : 0));
+  metrics.stack_ms = Percentiles(loop.stack_ms());
+
+  const std::vector<PosePair> pairs = PairAtEqualStamps(truth.trajectory(), estimate);
+  MapPicture picture{.title = name + ", seed " + std::to_string(scenario.seed), .map = map, .outline = outline,
+                     .truth = truth.trajectory(), .estimate = estimate};
+  if (const auto ate = AlignAndAte(pairs)) {
+    metrics.ate_rmse_m = picture.ate_rmse_m = ate->rmse_m;
+    metrics.ate_online_rmse_m = ate->rmse_m;  // nothing corrects the path afterwards yet
+    picture.T_world_map = ate->T_world_map;
+    picture.size = MeasureMapSize(map, ate->T_world_map, outline);
+    metrics.map_size_m = picture.size.size_m;
+    metrics.map_size_error_percent = picture.size.error_percent;
+    const sim::RayScene room(twin.world().model(), CarBodies(twin.world()));
+    const TrueRange true_range = TrueRangeOf(room);
+    metrics.map_to_plan_p95_m = MapToPlanP95_m(map, ate->T_world_map, true_range);
+    metrics.coverage_percent = CoveragePercent(map, ate->T_world_map, outline, truth.trajectory(), true_range);
+  }
+  if (const auto rpe = RpeOverOneMetre(pairs)) {
+    metrics.rpe_translation_percent = rpe->translation_percent;
+    metrics.rpe_rotation_deg_per_m = rpe->rotation_deg_per_m;
+  }
+
+  const std::string tum = ToTum(estimate), ply = ToPly(map);
+  folder.Write("trajectory_estimate.tum", tum);
+  folder.Write("trajectory_online.tum", tum);
+  folder.Write("trajectory_truth.tum", ToTum(truth.trajectory()));
+  folder.Write("map.ply", ply);
+  const GridMap grid = ToGridMap(slam.occupancy());
+  folder.Write("map.pgm", ToPgm(grid));
+  folder.Write("map.yaml", ToMapYaml(grid, "map.pgm"));
+  folder.Write("map.png", ToPng(picture));
+  result.hashes = {.state = truth.state_hash(), .depth = evidence.depth.Hex(), .color = std::nullopt,
+                   .trajectory = HashOf(tum), .map = HashOf(ply)};
+  if (robot.color) result.hashes.color = evidence.color.Hex();
+  return result;
+}
+
+}  // namespace merlin

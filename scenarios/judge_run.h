@@ -1,0 +1,27 @@
+// The judge's bench: what a run produced against what was true, as figures, hashes and files.
+#pragma once
+
+#include <cstdint>
+
+#include "robot/twin/twin.h"
+#include "scenarios/drive_loop.h"
+#include "scenarios/judge/output_folder.h"
+#include "scenarios/judge/result.h"
+#include "scenarios/judge/sha256.h"
+#include "scenarios/truth.h"
+
+namespace merlin {
+
+// Hashes of the frames as they were delivered: stamps and buffers.
+struct Evidence {
+  Sha256 depth, color;
+  std::int64_t depth_frames = 0, color_frames = 0;
+  void Add(const DepthFrame& frame);
+  void Add(const ColorFrame& frame);
+};
+
+// Writes trajectories and maps into the folder and fills in all figures but those of wall time. Checks are not evaluated.
+RunResult JudgeRun(const std::string& name, const Scenario& scenario, Twin& twin, const Truth& truth, const DriveLoop& loop,
+                   const Evidence& evidence, OutputFolder& folder);
+
+}  // namespace merlin

@@ -1,0 +1,57 @@
+#include "scenarios/names.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "robot/types/error.h"
+#include "robot/types/nearest_name.h"
+
+namespace merlin {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> StemsIn(const fs::path& folder, const std::string& ending) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ending) names.push_back(entry.path().stem().string());
+  std::ranges::sort(names);
+  return names;
+}
+
+fs::path Resolve(const std::string& what, const std::string& name, const fs::path& named, const std::string& ending,
+                 const std::vector<std::string>& known) {
+  const bool is_path = name.find('/') != std::string::npos || name.ends_with(ending);
+  const fs::path file = is_path ? fs::path(name) : named;
+  if (fs::is_regular_file(file)) return file;
+  if (is_path) throw InputError(name, "no such " + what + " file");
+  throw InputError("unknown " + what + " '" + name + "'" +
+                   (known.empty() ? "" : "; did you mean '" + NearestName(name, known) + "'?"));
+}
+
+}  // namespace
+
+fs::path Home() {
+  const char* home = std::getenv("MERLIN_HOME");
+  return home != nullptr ? fs::path(home) : fs::path(MERLIN_SOURCE_DIR);
+}
+
+fs::path ScenarioFile(const std::string& name) {
+  return Resolve("scenario", name, Home() / "scenarios" / (name + ".yaml"), ".yaml", ScenarioNames());
+}
+fs::path RoomFile(const std::string& name) {
+  return Resolve("room", name, Home() / "models/rooms" / (name + ".xml"), ".xml", RoomNames());
+}
+fs::path CameraFile(const std::string& name) {
+  return Resolve("camera", name, Home() / "models/cameras" / (name + ".yaml"), ".yaml", CameraNames());
+}
+fs::path CarFile(const std::string& name) {
+  return Resolve("car", name, Home() / "models" / name / (name + ".urdf"), ".urdf", {"merlin"});
+}
+
+std::vector<std::string> ScenarioNames() { return StemsIn(Home() / "scenarios", ".yaml"); }
+std::vector<std::string> RoomNames() { return StemsIn(Home() / "models/rooms", ".xml"); }
+std::vector<std::string> CameraNames() { return StemsIn(Home() / "models/cameras", ".yaml"); }
+
+}  // namespace merlin

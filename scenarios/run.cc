@@ -1,0 +1,136 @@
+#include "scenarios/run.h"
+
+#include <sys/resource.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "robot/description/description.h"
+#include "robot/twin/twin.h"
+#include "robot/types/error.h"
+#include "scenarios/drive_loop.h"
+#include "scenarios/judge_run.h"
+#include "scenarios/judge/output_folder.h"
+#include "scenarios/names.h"
+#include "scenarios/truth.h"
+
+namespace merlin {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+double SecondsSince(WallClock::time_point begin) { return std::chrono::duration<double>(WallClock::now() - begin).count(); }
+
+TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
+  const Sensors& sensors = scenario.sensors;
+  TwinOptions twin;
+  const CarStart& start = scenario.car.start;
+  twin.world = {RoomFile(scenario.room), ReadCar(CarFile(scenario.car.model)), FromXyYaw(start.x_m, start.y_m, start.yaw_rad),
+                ObstaclesOf(scenario)};
+  twin.materials = sim::ReadMaterials(Home() / "models/materials.yaml");
+  twin.seed = scenario.seed;
+  twin.depth = {ReadDepthCameraSheet(CameraFile(sensors.depth.camera)),
+                {sensors.depth.integration_us * 1e-6, sensors.depth.frequency_mhz * 1e6},
+                sim::ParseTofEffects(sensors.depth.effects),
+                sensors.depth.rate_hz};
+  twin.depth.sheet.latency_s = sensors.depth.latency_s.value_or(twin.depth.sheet.latency_s);
+  if (sensors.color) {
+    twin.color.emplace(ReadColorCameraSheet(CameraFile(sensors.color->camera)), sensors.color->rate_hz, options.gl);
+    twin.color->sheet.latency_s = sensors.color->latency_s.value_or(twin.color->sheet.latency_s);
+  }
+  if (sensors.compass)
+    twin.compass.emplace(sim::CompassConfig{sensors.compass->noise_rad, sensors.compass->noise_rad}, sensors.compass->rate_hz);
+  twin.end = FromSeconds(scenario.duration_s);
+  twin.threads = options.threads;
+  return twin;
+}
+
+// Without GL a scenario that can do without colour runs on depth alone, and says so.
+std::unique_ptr<Twin> MakeTwin(TwinOptions twin, const Scenario& scenario, std::string& note) {
+  if (!twin.color) return std::make_unique<Twin>(twin);
+  const bool required = scenario.sensors.color->required;
+  if (twin.color->gl == sim::Gl::kOff) {
+    if (required) throw MachineError("this scenario needs the colour camera (sensors.color.required), and --gl is off");
+    note = "depth only: --gl is off";
+    twin.color.reset();
+    return std::make_unique<Twin>(twin);
+  }
+  try {
+    return std::make_unique<Twin>(twin);
+  } catch (const MachineError& error) {
+    if (required) throw MachineError("this scenario needs the colour camera (sensors.color.required): " + std::string(error.what()));
+    note = "depth only: " + std::string(error.what());
+  }
+  twin.color.reset();
+  return std::make_unique<Twin>(twin);
+}
+
+double PeakRss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+// Holds the run back to the wall's pace, and reports progress now and then.
+class Pacer {
+ public:
+  explicit Pacer(const RunOptions& options) : options_(options) {}
+  void Tick(Time now, double distance_m, const std::string& doing) {
+    if (options_.pace > 0.0)
+      std::this_thread::sleep_until(begin_ + std::chrono::duration_cast<WallClock::duration>(
+                                                 std::chrono::duration<double>(Seconds(now) / options_.pace)));
+    if (!options_.progress || SecondsSince(reported_) < 0.2) return;
+    reported_ = WallClock::now();
+    options_.progress(now, distance_m, doing);
+  }
+
+ private:
+  const RunOptions& options_;
+  WallClock::time_point begin_ = WallClock::now(), reported_ = begin_;
+};
+
+}  // namespace
+
+RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) {
+  const auto begin = WallClock::now();
+  const Scenario& scenario = options.scenario;
+  RunReport report;
+  const std::unique_ptr<Twin> twin = MakeTwin(TwinOptionsOf(scenario, options), scenario, report.note);
+  OutputFolder folder(options.out);
+  folder.Write("scenario.yaml", ToYaml(scenario));
+  report.gl_name = twin->gl_name();
+
+  Truth truth(scenario, twin->world());
+  twin->OnStep([&truth](sim::World& world) { truth.Watch(world); });
+  DriveLoop loop(twin->robot(), ReadCar(CarFile(scenario.car.model)), scenario.perception, scenario.slam, scenario.task,
+                 scenario.pilot);
+  Evidence evidence;
+  const double setup_s = SecondsSince(begin);
+  const auto first_step = WallClock::now();
+  Pacer pacer(options);
+  const LoopEnd end = loop.Run(
+      stop, {.depth = [&](const DepthFrame& frame) { evidence.Add(frame), truth.Keep(frame.stamp); },
+             .color = [&](const ColorFrame& frame) { evidence.Add(frame); },
+             .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop.slam().path_m(), decision.doing); }});
+  const double wall_s = SecondsSince(first_step);
+
+  RunResult& result = report.result;
+  result = JudgeRun(options.name, scenario, *twin, truth, loop, evidence, folder);
+  result.metrics.wall_time_s = wall_s;
+  result.metrics.setup_s = setup_s;
+  result.metrics.sim_time_s = Seconds(twin->world().Now());
+  result.metrics.real_time_factor = *result.metrics.sim_time_s / wall_s;
+  result.metrics.peak_rss_mb = PeakRss_mb();
+  result.checks = Evaluate(scenario.checks, result.metrics, options.name);
+  result.verdict = end == LoopEnd::kInterrupted ? Verdict::kInterrupted
+                   : end == LoopEnd::kDeviceLost ? Verdict::kFail
+                                                 : Judge(result.checks);
+  folder.Write("junit.xml", ToJUnit(result));
+  folder.Finish(ToJson(result));
+  return report;
+}
+
+}  // namespace merlin

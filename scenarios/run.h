@@ -1,0 +1,36 @@
+// Runs a scenario in the twin, judges it against the truth, and leaves its files.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "scenarios/judge/result.h"
+#include "scenarios/scenario.h"
+#include "sim/renderer.h"
+
+namespace merlin {
+
+struct RunOptions {
+  std::string name;                            // of the scenario, for people and for result.json
+  Scenario scenario;
+  std::filesystem::path out;
+  sim::Gl gl = sim::Gl::kAuto;                 // kOff: depth only
+  int threads = 2;
+  double pace = 0.0;                           // simulated over wall time not to be exceeded; 0: as fast as it goes
+  std::function<void(Time now, double distance_m, const std::string& doing)> progress;  // a few times a second
+};
+
+struct RunReport {
+  RunResult result;
+  std::string gl_name;                         // empty: without colour
+  std::string note;                            // one sentence the user should know; may be empty
+};
+
+// stop: set from a signal handler; the car stands, files are written, the verdict is kInterrupted.
+// Throws InputError, MachineError (GL missing where the scenario requires colour, disk full) before anything is simulated
+// or written that looks whole.
+RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop);
+
+}  // namespace merlin

@@ -1,0 +1,48 @@
+// What really happened: watches the simulated world for the judge. The stack never sees it.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "scenarios/judge/sha256.h"
+#include "scenarios/judge/trajectory.h"
+#include "scenarios/scenario.h"
+#include "sim/world.h"
+
+namespace merlin {
+
+// Boxes of a scenario, as the world holds them.
+std::vector<sim::Obstacle> ObstaclesOf(const Scenario& scenario);
+
+class Truth {
+ public:
+  Truth(const Scenario& scenario, const sim::World& world);
+
+  // After every step: places and removes obstacles, counts contacts, hashes the state.
+  void Watch(sim::World& world);
+  // Keeps the true pose at a stamp of the last second.
+  void Keep(Time stamp);
+
+  const Trajectory& trajectory() const { return trajectory_; }
+  int collisions() const { return collisions_; }
+  std::string state_hash() const { return state_.Hex(); }
+  std::optional<double> obstacle_gap_m() const { return obstacle_gap_m_; }
+  // Longest time in a row that the car stood while an obstacle was there; empty without obstacles.
+  std::optional<double> obstacle_stop_s() const { return obstacle_stop_s_; }
+
+ private:
+  void WatchObstacles(sim::World& world);
+
+  std::vector<ObstacleEvent> events_;
+  std::vector<bool> placed_;
+  std::deque<StampedPose> recent_;
+  Trajectory trajectory_;
+  Sha256 state_;
+  int collisions_ = 0;
+  std::optional<Time> last_touch_;
+  std::optional<double> obstacle_gap_m_, obstacle_stop_s_;
+  double standing_s_ = 0.0;
+};
+
+}  // namespace merlin

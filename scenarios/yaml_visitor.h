@@ -1,0 +1,154 @@
+// Configs from YAML and back: visitors over each config's Visit function (see robot/types/config.h).
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <optional>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "robot/types/config.h"
+#include "robot/types/nearest_name.h"
+#include "scenarios/judge/result.h"
+
+namespace merlin {
+
+template <class T>
+struct IsVector : std::false_type {};
+template <class T>
+struct IsVector<std::vector<T>> : std::true_type {};
+template <class T>
+struct IsOptional : std::false_type {};
+template <class T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+
+// Fills a config from a map node; collects every fault instead of stopping at the first.
+class YamlReader {
+ public:
+  YamlReader(const YAML::Node& node, std::string file, std::string path, std::vector<std::string>& faults)
+      : node_(node), file_(std::move(file)), path_(std::move(path)), faults_(faults) {}
+
+  template <class T>
+  void operator()(const char* key, T& value, Range range = {}) {
+    known_.insert(key);
+    const YAML::Node child = node_[key];
+    if (!child.IsDefined()) return;
+    Read(child, path_ + key, value, range);
+  }
+
+  // Reads the whole config, unknown keys included.
+  template <class Config>
+  void ReadInto(Config& config) {
+    if (!node_.IsMap()) return Fault(node_, path_.empty() ? "the file" : path_, "expected a map of keys");
+    Visit(*this, config);
+    for (const auto& entry : node_) {
+      const std::string key = entry.first.Scalar();
+      if (!known_.contains(key))
+        Fault(entry.first, path_ + key, "unknown key; did you mean '" + NearestName(key, known_) + "'?");
+    }
+  }
+
+ private:
+  void Fault(const YAML::Node& node, const std::string& field, const std::string& what) {
+    const YAML::Mark mark = node.Mark();
+    faults_.push_back(file_ + (mark.is_null() ? "" : ":" + std::to_string(mark.line + 1)) + ": " + field + ": " + what);
+  }
+
+  template <class T>
+  void Read(const YAML::Node& node, const std::string& field, T& value, Range range) {
+    if constexpr (IsOptional<T>::value) {
+      if (node.IsNull()) return value.reset();
+      Read(node, field, value.emplace(), range);
+    } else if constexpr (std::is_same_v<T, std::vector<CheckLimit>>) {
+      ReadChecks(node, field, value);
+    } else if constexpr (IsVector<T>::value) {
+      if (!node.IsSequence()) return Fault(node, field, "expected a list");
+      value.clear();
+      for (std::size_t i = 0; i < node.size(); ++i)
+        Read(node[i], field + "[" + std::to_string(i) + "]", value.emplace_back(), range);
+    } else if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string>) {
+      YamlReader(node, file_, field + ".", faults_).ReadInto(value);
+    } else {
+      ReadScalar(node, field, value, range);
+    }
+  }
+
+  template <class T>
+  void ReadScalar(const YAML::Node& node, const std::string& field, T& value, Range range) {
+    const char* kind = std::is_same_v<T, std::string> ? "a text" : std::is_same_v<T, bool> ? "true or false"
+                       : std::is_integral_v<T> ? "a whole number" : "a number";
+    const std::string got = node.IsScalar() ? "got '" + node.Scalar() + "'" : "got no single value";
+    try {
+      if (std::is_unsigned_v<T> && node.IsScalar() && node.Scalar().starts_with('-')) throw YAML::Exception(node.Mark(), "");
+      value = node.as<T>();
+    } catch (const YAML::Exception&) {
+      return Fault(node, field, "expected " + std::string(kind) + ", " + got);
+    }
+    if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+      const double number = static_cast<double>(value);
+      if (!std::isfinite(number) || !(number >= range.min && number <= range.max))
+        Fault(node, field, "expected a number in [" + detail::Text(range.min) + ", " + detail::Text(range.max) + "], " + got);
+    }
+  }
+
+  void ReadChecks(const YAML::Node& node, const std::string& field, std::vector<CheckLimit>& checks) {
+    if (!node.IsMap()) return Fault(node, field, "expected a map of limits");
+    checks.clear();
+    for (const auto& entry : node) {
+      CheckLimit check{entry.first.Scalar(), 0.0};
+      ReadScalar(entry.second, field + "." + check.name, check.limit, {-1e12, 1e12});
+      checks.push_back(check);
+      try {
+        RequireKnown(check, file_ + ":" + std::to_string(entry.first.Mark().line + 1));
+      } catch (const std::exception& error) {
+        faults_.push_back(error.what());
+      }
+    }
+  }
+
+  YAML::Node node_;
+  std::string file_, path_;
+  std::vector<std::string>& faults_;
+  std::set<std::string> known_;
+};
+
+// Writes a config with every default.
+class YamlWriter {
+ public:
+  explicit YamlWriter(YAML::Emitter& out) : out_(out) {}
+
+  template <class T>
+  void operator()(const char* key, T& value, Range = {}) {
+    if constexpr (IsOptional<T>::value) {
+      if (value) (*this)(key, *value);
+    } else {
+      out_ << YAML::Key << key << YAML::Value;
+      Write(value);
+    }
+  }
+  template <class T>
+  void Write(T& value) {
+    if constexpr (std::is_same_v<T, std::vector<CheckLimit>>) {
+      out_ << YAML::BeginMap;
+      for (const CheckLimit& check : value) out_ << YAML::Key << check.name << YAML::Value << check.limit;
+      out_ << YAML::EndMap;
+    } else if constexpr (IsVector<T>::value) {
+      out_ << YAML::BeginSeq;
+      for (auto& item : value) Write(item);
+      out_ << YAML::EndSeq;
+    } else if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string>) {
+      out_ << YAML::BeginMap;
+      Visit(*this, value);
+      out_ << YAML::EndMap;
+    } else {
+      out_ << value;
+    }
+  }
+
+ private:
+  YAML::Emitter& out_;
+};
+
+}  // namespace merlin

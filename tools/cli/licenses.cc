@@ -1,0 +1,65 @@
+#include "tools/cli/licenses.h"
+
+#include <fmt/core.h>
+#include <gnu/libc-version.h>
+#include <openssl/crypto.h>
+#include <tinyxml.h>
+
+#include <CLI/Version.hpp>
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <opencv2/core/version.hpp>
+
+#if MERLIN_TWIN
+#include <embree3/rtcore.h>
+#include <mujoco/mujoco.h>
+#endif
+
+namespace merlin::cli {
+namespace {
+
+std::string Dotted(int major, int minor, int patch) { return fmt::format("{}.{}.{}", major, minor, patch); }
+
+std::vector<LinkedWork> TwinWorks() {
+#if MERLIN_TWIN
+  return {
+      {"MuJoCo", mj_versionString(), "Apache-2.0",
+       "shared library; its own parts: licenses/LICENSES_THIRD_PARTY.md beside it"},
+      {"Embree", RTC_VERSION_STRING, "Apache-2.0", "shared library"},
+      {"oneTBB", "", "Apache-2.0", "shared library, through Embree"},
+      {"libglvnd (EGL)", "", "MIT AND BSD-1-Clause AND Apache-2.0", "loaded at run time"},
+      {"Mesa (EGL, OSMesa)", "", "MIT", "loaded at run time"},
+      {"LLVM (llvmpipe)", "", "Apache-2.0 WITH LLVM-exception", "loaded at run time, through Mesa"},
+  };
+#else
+  return {};
+#endif
+}
+
+}  // namespace
+
+std::vector<LinkedWork> LinkedWorks() {
+  std::vector<LinkedWork> works = TwinWorks();
+  const std::vector<LinkedWork> always{
+      {"Eigen", Dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION), "MPL-2.0", "headers"},
+      {"OpenCV (core, imgproc, imgcodecs)", CV_VERSION, "Apache-2.0", "shared libraries"},
+      {"urdfdom", "", "BSD-3-Clause", "shared library and headers"},
+      {"TinyXML", Dotted(TIXML_MAJOR_VERSION, TIXML_MINOR_VERSION, TIXML_PATCH_VERSION), "Zlib",
+       "shared library, through urdfdom"},
+      {"console_bridge", "", "BSD-3-Clause", "shared library, through urdfdom"},
+      {"yaml-cpp", MERLIN_YAML_CPP_VERSION, "MIT", "shared library"},
+      {"nlohmann_json", Dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH),
+       "MIT", "headers"},
+      {"CLI11", CLI11_VERSION, "BSD-3-Clause", "headers"},
+      {"fmt", Dotted(FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100), "MIT", "shared library"},
+      {"OpenSSL (libcrypto)", OpenSSL_version(OPENSSL_VERSION_STRING), "Apache-2.0", "shared library"},
+      {"GoogleTest", "", "BSD-3-Clause", "static library, in the tests only"},
+      {"GNU C Library", gnu_get_libc_version(), "LGPL-2.1-or-later", "shared library"},
+      {"GCC run-time (libstdc++, libgcc)", __VERSION__, "GPL-3.0-or-later WITH GCC-exception-3.1",
+       "shared libraries and headers"},
+  };
+  works.insert(works.end(), always.begin(), always.end());
+  return works;
+}
+
+}  // namespace merlin::cli

@@ -1,0 +1,60 @@
+// The program `merlin`: finds the subcommand, and turns what it throws into one sentence and the documented exit code.
+#include <signal.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "robot/types/error.h"
+#include "tools/cli/commands.h"
+
+namespace merlin::cli {
+
+std::atomic<bool> interrupted{false};
+
+namespace {
+
+// Once: the run ends in good order. Again: at once.
+void OnInterrupt(int signal) {
+  if (interrupted.exchange(true)) _exit(kInterrupted);
+  struct sigaction action{};
+  action.sa_handler = OnInterrupt;
+  sigaction(signal, &action, nullptr);
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("merlin: a digital twin of a car-like robot with a time-of-flight camera");
+  app.set_version_flag("--version", MERLIN_VERSION);
+  app.require_subcommand(1);
+  int exit_code = kPass;
+  AddRun(app, exit_code);
+  AddList(app, exit_code);
+  AddDoctor(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kPass : kBadInput;
+  }
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace merlin::cli
+
+int main(int argc, char** argv) {
+  struct sigaction action{};
+  action.sa_handler = merlin::cli::OnInterrupt;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  try {
+    return merlin::cli::Main(argc, argv);
+  } catch (const merlin::InputError& error) {
+    std::fprintf(stderr, "merlin: %s\n", error.what());
+    return merlin::cli::kBadInput;
+  } catch (const merlin::MachineError& error) {
+    std::fprintf(stderr, "merlin: %s\n", error.what());
+    return merlin::cli::kCannot;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "merlin: internal error: %s\n", error.what());
+    return merlin::cli::kOurFault;
+  }
+}

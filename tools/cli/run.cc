@@ -1,0 +1,155 @@
+// `merlin run`: drives a scenario, judges it, says how it went.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robot/types/error.h"
+#include "scenarios/scenario.h"
+#include "tools/cli/commands.h"
+#if MERLIN_TWIN
+#include "scenarios/run.h"
+#endif
+
+namespace merlin::cli {
+namespace {
+
+struct Arguments {
+  std::string scenario, out, robot = "twin", pace = "fast", gl = "auto";
+  std::optional<std::uint64_t> seed;
+  std::optional<double> duration_s;
+  int threads = 2;
+  std::vector<std::string> sets;
+  bool json = false;
+};
+
+#if MERLIN_TWIN
+
+sim::Gl GlOf(const std::string& name) {
+  return name == "egl" ? sim::Gl::kEgl : name == "osmesa" ? sim::Gl::kOsmesa : name == "off" ? sim::Gl::kOff : sim::Gl::kAuto;
+}
+
+double PaceOf(const std::string& text) {
+  if (text == "fast") return 0.0;
+  if (text == "real") return 1.0;
+  std::size_t used = 0;
+  double pace = 0.0;
+  try {
+    pace = std::stod(text, &used);
+  } catch (const std::exception&) {
+  }
+  if (used != text.size() || !(pace > 0.0) || !(pace < 1e6)) throw InputError("--pace", "unknown pace", "fast, real or a number > 0", "'" + text + "'");
+  return pace;
+}
+
+// A line that renews itself on a terminal, a plain one every ten seconds of the run elsewhere.
+class Progress {
+ public:
+  explicit Progress(double duration_s) : duration_s_(duration_s) {}
+  void Show(Time now, double distance_m, const std::string& doing) {
+    const double now_s = Seconds(now);
+    const std::string line = fmt::format("{:6.1f} s of {:.0f} s, {:6.2f} m: {}", now_s, duration_s_, distance_m, doing);
+    if (terminal_) {
+      fmt::print(stderr, "\r\033[K{}", line);
+    } else if (now_s >= next_s_) {
+      fmt::print(stderr, "{}\n", line);
+      next_s_ = now_s + 10.0;
+    }
+    std::fflush(stderr);
+  }
+  ~Progress() {
+    if (terminal_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  double duration_s_, next_s_ = 0.0;
+  bool terminal_ = isatty(STDERR_FILENO) == 1;
+};
+
+std::string Number(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "unknown";
+}
+
+void PrintSummary(const RunReport& report, const std::filesystem::path& out) {
+  const RunResult& result = report.result;
+  const Metrics& m = result.metrics;
+  fmt::print("{} seed {}: {}\n", result.scenario, result.seed, Name(result.verdict));
+  for (const Check& check : result.checks)
+    fmt::print("  {} {:<32} {} (limit {:g})\n", check.pass ? "pass" : "FAIL", check.name, Number(check.value, 3), check.limit);
+  if (!report.note.empty()) fmt::print("  note: {}\n", report.note);
+  fmt::print("  drove {} m in {} s, {} laps, {} collisions\n", Number(m.distance_m, 2), Number(m.sim_time_s, 1), m.laps.value_or(0),
+             m.collisions.value_or(0));
+  if (m.map_size_m[0] && m.map_size_m[1])
+    fmt::print("  map {} x {} m, off the plan by {} and {} %\n", Number(m.map_size_m[0], 2), Number(m.map_size_m[1], 2),
+               Number(m.map_size_error_percent[0], 2), Number(m.map_size_error_percent[1], 2));
+  fmt::print("  path error (ATE) {} m, walls within {} m of the true ones (95 %)\n", Number(m.ate_rmse_m, 3), Number(m.map_to_plan_p95_m, 3));
+  fmt::print("  {} times real time, {} ms a frame in the stack (p50), colour: {}\n", Number(m.real_time_factor, 2),
+             Number(m.stack_ms.p50, 1), report.gl_name.empty() ? "none" : report.gl_name);
+  const auto print_hash = [](const char* name, const std::optional<std::string>& hash) {
+    fmt::print("  {:<10} {}\n", name, hash.value_or("none"));
+  };
+  print_hash("state", result.hashes.state);
+  print_hash("depth", result.hashes.depth);
+  print_hash("color", result.hashes.color);
+  print_hash("trajectory", result.hashes.trajectory);
+  print_hash("map", result.hashes.map);
+  fmt::print("files: {} (look at map.png)\n", out.string());
+}
+
+int Run(const Arguments& arguments) {
+  RunOptions options;
+  options.name = std::filesystem::path(arguments.scenario).stem().string();
+  std::vector<std::string> sets = arguments.sets;
+  if (arguments.seed) sets.push_back("seed=" + std::to_string(*arguments.seed));
+  if (arguments.duration_s) sets.push_back(fmt::format("duration_s={}", *arguments.duration_s));
+  options.scenario = ReadScenario(arguments.scenario, sets);
+  if (arguments.robot != "twin") throw InputError("--robot", "this robot is not built in", "twin", "'" + arguments.robot + "'");
+  options.out = arguments.out.empty() ? std::filesystem::path("runs") / fmt::format("{}-{}", options.name, options.scenario.seed)
+                                      : std::filesystem::path(arguments.out);
+  options.gl = GlOf(arguments.gl);
+  options.threads = arguments.threads;
+  options.pace = PaceOf(arguments.pace);
+  RunReport report;
+  {
+    Progress progress(options.scenario.duration_s);
+    if (!arguments.json)
+      options.progress = [&progress](Time now, double distance_m, const std::string& doing) { progress.Show(now, distance_m, doing); };
+    report = RunScenario(options, interrupted);
+  }
+  if (arguments.json) fmt::print("{}", ToJson(report.result));
+  else PrintSummary(report, options.out);
+  return report.result.verdict == Verdict::kPass ? kPass : report.result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
+}
+
+#else
+
+int Run(const Arguments& arguments) {
+  (void)ReadScenario(arguments.scenario, arguments.sets);
+  throw MachineError("this build has no twin (MERLIN_TWIN=OFF)");
+}
+
+#endif
+
+}  // namespace
+
+void AddRun(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* run = app.add_subcommand("run", "runs a scenario and judges it");
+  run->add_option("scenario", arguments->scenario, "a name in scenarios/, or a path")->required();
+  run->add_option("--seed", arguments->seed, "of all randomness; default the scenario's");
+  run->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-<seed>");
+  run->add_option("--robot", arguments->robot, "twin");
+  run->add_option("--pace", arguments->pace, "fast (default), real, or a factor of real time");
+  run->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
+  run->add_option("--threads", arguments->threads, "same bits for any number; default 2")->check(CLI::Range(1, 256));
+  run->add_option("--set", arguments->sets, "a.b=c, over the scenario's file; may be repeated")->allow_extra_args(false);
+  run->add_option("--duration", arguments->duration_s, "seconds, instead of the scenario's");
+  run->add_flag("--json", arguments->json, "print result.json instead of the summary");
+  run->callback([arguments, &exit_code] { exit_code = Run(*arguments); });
+}
+
+}  // namespace merlin::cli
