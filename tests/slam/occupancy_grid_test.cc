@@ -1,0 +1,60 @@
+#include "slam/map/occupancy_grid.h"
+
+#include <gtest/gtest.h>
+
+namespace merlin {
+namespace {
+
+using Cell = OccupancyGrid::Cell;
+
+Observation Looking(std::vector<Eigen::Vector3f> points_base) {
+  Observation observation;
+  observation.camera_base = {0.0f, 0.0f, 0.35f};
+  for (const auto& p : points_base) observation.points_base.push_back({.position = p, .sigma_m = 0.01f});
+  return observation;
+}
+
+TEST(OccupancyGrid, IsUnknownUntilSomethingWasSeen) {
+  OccupancyGrid grid({});
+  EXPECT_EQ(grid.At({0.0, 0.0}), Cell::kUnknown);
+  grid.Insert(Looking({}), Pose::Identity());
+  EXPECT_EQ(grid.At({1.0, 0.0}), Cell::kUnknown);
+}
+
+TEST(OccupancyGrid, FreesTheWayToAHitAndOccupiesTheHit) {
+  OccupancyGrid grid({});
+  grid.Insert(Looking({{2.02f, 0.02f, 0.35f}}), Pose::Identity());
+  EXPECT_EQ(grid.At({2.02, 0.02}), Cell::kOccupied);
+  for (double x = 0.02; x < 1.95; x += 0.05) EXPECT_EQ(grid.At({x, 0.02}), Cell::kFree) << x;
+  EXPECT_EQ(grid.At({2.1, 0.02}), Cell::kUnknown);
+  EXPECT_EQ(grid.At({1.0, 0.3}), Cell::kUnknown);
+}
+
+TEST(OccupancyGrid, TakesFloorAndCeilingForNoObstacle) {
+  OccupancyGrid grid({});
+  grid.Insert(Looking({{2.0f, 0.0f, 0.0f}, {2.0f, 1.0f, 2.4f}}), Pose::Identity());
+  EXPECT_NE(grid.At({2.0, 0.0}), Cell::kOccupied);
+  EXPECT_NE(grid.At({2.0, 1.0}), Cell::kOccupied);
+}
+
+TEST(OccupancyGrid, ChangesItsMindWhenSomethingHasGone) {
+  OccupancyGrid grid({});
+  grid.Insert(Looking({{1.02f, 0.02f, 0.35f}}), Pose::Identity());
+  EXPECT_EQ(grid.At({1.02, 0.02}), Cell::kOccupied);
+  for (int i = 0; i < 5; ++i) grid.Insert(Looking({{3.02f, 0.02f, 0.35f}}), Pose::Identity());
+  EXPECT_EQ(grid.At({1.02, 0.02}), Cell::kFree);
+}
+
+TEST(OccupancyGrid, GrowsAndKeepsWhatItKnew) {
+  OccupancyGrid grid({});
+  grid.Insert(Looking({{1.02f, 0.02f, 0.35f}}), Pose::Identity());
+  grid.Insert(Looking({{1.02f, 0.02f, 0.35f}}), FromXyYaw(-40.0, 30.0, 0.0));
+  grid.Insert(Looking({{1.02f, 0.02f, 0.35f}}), FromXyYaw(40.0, -30.0, 0.0));
+  EXPECT_EQ(grid.At({1.02, 0.02}), Cell::kOccupied);
+  EXPECT_EQ(grid.At({-38.98, 30.02}), Cell::kOccupied);
+  EXPECT_EQ(grid.At({41.02, -29.98}), Cell::kOccupied);
+  EXPECT_EQ(grid.At({0.5, 0.02}), Cell::kFree);
+}
+
+}  // namespace
+}  // namespace merlin

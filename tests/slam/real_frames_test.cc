@@ -1,0 +1,113 @@
+// Real depth frames through the perception and registration that drive the loop.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "perception/project.h"
+#include "slam/map/voxel_map.h"
+#include "slam/register/icp.h"
+
+namespace merlin {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path RgbdFolder() {
+  const char* shared = std::getenv("MERLIN_SHARED_DATA");
+  return (shared ? fs::path(shared) : fs::path(MERLIN_SOURCE_DIR) / "../shared/data") / "rgbd";
+}
+
+// A Kinect-class camera as a sheet: every fourth pixel each way; so little noise that its sigma is a few millimetres.
+DepthCameraSheet Sheet() {
+  DepthCameraSheet sheet;
+  sheet.camera = {.width = 160, .height = 120, .fx_px = 518.0 / 4, .fy_px = 519.0 / 4, .cx_px = 325.5 / 4, .cy_px = 253.5 / 4};
+  sheet.signal_e_m2_per_us = 2000.0;
+  sheet.contrast_at_20mhz = 0.45;
+  sheet.contrast_corner_hz = 30e6;
+  sheet.read_noise_e = 200.0;
+  return sheet;
+}
+
+// depth/N.pgm: 16 bit big-endian, 1/1000 m along the optical axis.
+DepthFrame ReadFrame(int number) {
+  std::ifstream in(RgbdFolder() / "depth" / (std::to_string(number) + ".pgm"), std::ios::binary);
+  std::string magic;
+  int width = 0, height = 0, max = 0;
+  in >> magic >> width >> height >> max;
+  in.get();
+  std::vector<unsigned char> bytes(2 * static_cast<std::size_t>(width) * height);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  EXPECT_TRUE(in.good() && width == 640 && height == 480) << number;
+
+  const CameraModel camera = Sheet().camera;
+  DepthFrame frame;
+  frame.width = camera.width;
+  frame.height = camera.height;
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const std::size_t i = 2 * (static_cast<std::size_t>(4 * v) * width + 4 * u);
+      const double depth_m = (bytes[i] * 256 + bytes[i + 1]) / 1000.0;
+      const bool valid = depth_m > 0.3 && depth_m < 6.0;
+      frame.range_m.push_back(static_cast<float>(depth_m / camera.Ray(u, v).z()));
+      frame.amplitude.push_back(200'000.0f);
+      frame.flags.push_back(valid ? 0 : kInvalid);
+    }
+  }
+  frame.intensity = frame.amplitude;
+  return frame;
+}
+
+Observation Perceive(int number) {
+  const DepthCameraSheet sheet = Sheet();
+  Observation observation;
+  ProjectDepth(FilterDepth(ReadFrame(number), sheet, {}), sheet, PixelRays(sheet.camera), Pose::Identity(), observation);
+  return observation;
+}
+
+std::vector<Pose> ReadPoses() {
+  std::ifstream in(RgbdFolder() / "pose.txt");
+  std::vector<Pose> poses;
+  for (double x, y, z, qx, qy, qz, qw; in >> x >> y >> z >> qx >> qy >> qz >> qw;) {
+    Pose pose = Pose::Identity();
+    pose.translation() = Eigen::Vector3d(x, y, z);
+    pose.linear() = Eigen::Quaterniond(qw, qx, qy, qz).normalized().toRotationMatrix();
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+TEST(RealFrames, RegisterNeighboursFromFifteenCentimetresAndFiveDegreesAway) {
+  if (!fs::exists(RgbdFolder() / "pose.txt")) GTEST_SKIP() << "no real frames at " << RgbdFolder();
+  const std::vector<Pose> poses = ReadPoses();
+  ASSERT_EQ(poses.size(), 5u);
+  for (int target = 2; target <= 4; ++target) {
+    const Observation a = Perceive(target), b = Perceive(target + 1);
+    const Pose T_a_b = poses[target - 1].inverse() * poses[target];
+    Vector6d away = Vector6d::Zero();
+    away.head<3>() = 0.15 * Eigen::Vector3d(1.0, -1.0, 1.0).normalized();
+    away.tail<3>() = 5.0 * std::numbers::pi / 180.0 * Eigen::Vector3d(1.0, 1.0, -1.0).normalized();
+
+    // Coarse to fine: a wide reach first, then sharp.
+    RegisterResult result{.T_map_base = T_a_b * Exp(away)};
+    for (const double voxel_m : {0.3, 0.1, 0.05}) {
+      VoxelMap map({.voxel_m = voxel_m});
+      map.Insert(a.points_base, Pose::Identity(), 0.0);
+      IcpConfig config{.iterations_max = 60};
+      config.kernel_m = 0.5 * voxel_m;
+      result = Register(Downsample(b.points_base, std::min(voxel_m, 0.1)), b.camera_base, map, {.T_map_base = result.T_map_base}, config);
+    }
+    const Pose error = T_a_b.inverse() * result.T_map_base;
+    const double error_deg = LogSo3(error.linear()).norm() * 180.0 / std::numbers::pi;
+    std::printf("pair %d-%d: %.1f cm, %.2f deg, %d iterations, converged %d\n", target, target + 1,
+                100.0 * error.translation().norm(), error_deg, result.iterations, result.converged);
+    EXPECT_LT(error.translation().norm(), 0.095) << target;
+    EXPECT_LT(error_deg, 1.0) << target;
+  }
+}
+
+}  // namespace
+}  // namespace merlin

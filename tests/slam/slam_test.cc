@@ -1,0 +1,77 @@
+#include "slam/slam.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace merlin {
+namespace {
+
+// What a level camera with a full view sees of a 4 x 3 m room with a pillar, as exact points on a grid.
+Observation InRoom(const Pose& T_world_base, double time_s) {
+  Observation observation;
+  observation.stamp = FromSeconds(time_s);
+  observation.T_odom_base = T_world_base;
+  observation.yaw_rad = Yaw(T_world_base);
+  observation.yaw_sigma_rad = 0.001;
+  observation.camera_base = {0.0f, 0.0f, 0.35f};
+  const auto add = [&](double x, double y, double z) {
+    const Eigen::Vector3d p = T_world_base.inverse() * Eigen::Vector3d(x, y, z);
+    observation.points_base.push_back({.position = p.cast<float>(), .sigma_m = 0.005f});
+  };
+  for (double z = 0.05; z < 1.5; z += 0.05) {
+    for (double x = -2.0; x <= 2.0; x += 0.05) add(x, -1.5, z), add(x, 1.5, z);
+    for (double y = -1.5; y <= 1.5; y += 0.05) add(-2.0, y, z), add(2.0, y, z);
+    for (double s = 0.0; s <= 0.3; s += 0.05) add(1.0 + s, 0.9, z), add(1.0, 0.9 + s, z);
+  }
+  for (double x = -2.0; x <= 2.0; x += 0.1)
+    for (double y = -1.5; y <= 1.5; y += 0.1) add(x, y, 0.0);
+  return observation;
+}
+
+TEST(Slam, CorrectsOdometryThatSlips) {
+  Slam slam({});
+  Pose T_world_base, T_odom_base = Pose::Identity();
+  for (int i = 0; i <= 60; ++i) {
+    T_world_base = FromXyYaw(-0.5 + 0.015 * i, 0.2 * std::sin(0.05 * i), 0.3 * std::sin(0.05 * i));
+    Observation observation = InRoom(T_world_base, 0.05 * i);
+    if (i > 0) T_odom_base.translation().x() += 0.015 * 1.05;  // wheels slip by 5 %, and know nothing of the side
+    observation.T_odom_base = T_odom_base;
+    ASSERT_TRUE(slam.Update(observation));
+    EXPECT_EQ(slam.lost_frames(), 0);
+  }
+  const Pose T_world_map = FromXyYaw(-0.5, 0.0, 0.0);
+  const Pose error = T_world_base.inverse() * T_world_map * slam.trajectory().back().T_map_base;
+  EXPECT_LT(error.translation().norm(), 0.02);
+  EXPECT_LT(std::abs(Yaw(error)), 0.01);
+  EXPECT_EQ(slam.trajectory().size(), 61u);
+}
+
+TEST(Slam, WaitsForTheHeadingAtTheStartButNotForEver) {
+  Slam slam({});
+  Observation observation = InRoom(Pose::Identity(), 0.0);
+  observation.yaw_sigma_rad = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(slam.Update(observation));
+  observation.stamp = FromSeconds(1.0);
+  EXPECT_FALSE(slam.Update(observation));
+  observation.stamp = FromSeconds(2.0);
+  EXPECT_TRUE(slam.Update(observation));
+}
+
+TEST(Slam, SaysThatItIsLostAndDrivesOnByOdometry) {
+  Slam slam({});
+  ASSERT_TRUE(slam.Update(InRoom(Pose::Identity(), 0.0)));
+  Observation blind;
+  blind.stamp = FromSeconds(0.05);
+  blind.T_odom_base = FromXyYaw(0.02, 0.0, 0.0);
+  blind.yaw_sigma_rad = 0.001;
+  const auto pose = slam.Update(blind);
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->translation().x(), 0.02, 1e-9);
+  EXPECT_EQ(slam.lost_frames(), 1);
+  EXPECT_FALSE(slam.last().converged);
+}
+
+}  // namespace
+}  // namespace merlin

@@ -1,0 +1,96 @@
+#include "slam/map/voxel_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace merlin {
+namespace {
+
+std::vector<Point> Scatter(int count, double size_m, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> at(static_cast<float>(-size_m), static_cast<float>(size_m));
+  std::vector<Point> points(count);
+  for (Point& point : points) point = {.position = {at(random), at(random), at(random)}, .sigma_m = 0.01f};
+  return points;
+}
+
+TEST(VoxelMap, FindsTheNearestSurfaceThatBruteForceFinds) {
+  // Any neighbourhood counts as a plane here, so that every voxel may be found.
+  VoxelMap map({.voxel_m = 0.1, .flatness_max = 1.0, .plane_points_min = 3});
+  map.Insert(Scatter(3000, 1.0, 1), Pose::Identity(), 0.0);
+  int found = 0;
+  for (const Point& query : Scatter(500, 1.0, 2)) {
+    const Eigen::Vector3i home = (query.position / 0.1f).array().floor().cast<int>();
+    const Voxel* expected = nullptr;
+    for (const Voxel& voxel : map.voxels()) {
+      const Eigen::Vector3i cell(voxel.cell[0], voxel.cell[1], voxel.cell[2]);
+      if (!voxel.has_normal() || (cell - home).cwiseAbs().maxCoeff() > 1) continue;
+      if (!expected || (voxel.mean - query.position).norm() < (expected->mean - query.position).norm()) expected = &voxel;
+    }
+    const Voxel* nearest = map.Nearest(query.position);
+    ASSERT_EQ(nearest == nullptr, expected == nullptr);
+    if (nearest == nullptr) continue;
+    EXPECT_EQ(nearest->cell, expected->cell);
+    ++found;
+  }
+  EXPECT_GT(found, 400);
+}
+
+TEST(VoxelMap, GivesAPlaneItsNormalAcrossTheOrigin) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> at(-0.5, 0.5);
+  const Eigen::Vector3d normal = Eigen::Vector3d(1.0, 2.0, -2.0) / 3.0;
+  const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
+  std::vector<Point> points(4000);
+  for (Point& point : points) point = {.position = (at(random) * u + at(random) * v).cast<float>(), .sigma_m = 0.01f};
+  VoxelMap map({});
+  map.Insert(points, Pose::Identity(), 0.0);
+  const Voxel* voxel = map.Nearest(Eigen::Vector3f::Zero());
+  ASSERT_NE(voxel, nullptr);
+  EXPECT_NEAR(std::abs(voxel->normal.cast<double>().dot(normal)), 1.0, 1e-4);
+  EXPECT_NEAR(voxel->mean.cast<double>().dot(normal), 0.0, 1e-4);
+}
+
+TEST(VoxelMap, HasNoNormalForALineOrASinglePoint) {
+  VoxelMap map({});
+  std::vector<Point> line(100);
+  for (int i = 0; i < 100; ++i) line[i] = {.position = {0.002f * i, 0.05f, 0.05f}, .sigma_m = 0.01f};
+  map.Insert(std::span(line).first(1), Pose::Identity(), 0.0);
+  EXPECT_EQ(map.Nearest(line[0].position), nullptr);
+  map.Insert(line, Pose::Identity(), 0.0);
+  for (const Voxel& voxel : map.voxels()) EXPECT_TRUE(!voxel.has_normal() || std::abs(voxel.normal.x()) < 1e-3f);
+}
+
+TEST(VoxelMap, ForgetsWhatWasNotSeenLately) {
+  VoxelMap map({});
+  map.Insert(Scatter(200, 0.3, 1), Pose::Identity(), 0.0);
+  map.Insert(Scatter(200, 0.3, 1), FromXyYaw(5.0, 0.0, 0.0), 7.0);
+  map.ForgetBefore(3.0);
+  ASSERT_FALSE(map.voxels().empty());
+  for (const Voxel& voxel : map.voxels()) EXPECT_GT(voxel.mean.x(), 4.0f);
+  map.ForgetBefore(8.0);
+  EXPECT_TRUE(map.voxels().empty());
+  EXPECT_EQ(map.Nearest(Eigen::Vector3f(5.0f, 0.0f, 0.0f)), nullptr);
+}
+
+TEST(VoxelMap, WeighsPointsByTheirPrecision) {
+  VoxelMap map({.voxel_m = 1.0});
+  const std::vector<Point> points{{.position = {0.2f, 0.5f, 0.5f}, .sigma_m = 0.01f}, {.position = {0.7f, 0.5f, 0.5f}, .sigma_m = 0.02f}};
+  map.Insert(points, Pose::Identity(), 0.0);
+  ASSERT_EQ(map.voxels().size(), 1u);
+  EXPECT_NEAR(map.voxels()[0].mean.x(), (4.0 * 0.2 + 1.0 * 0.7) / 5.0, 1e-6);  // 1 / sigma^2: 4 to 1
+}
+
+TEST(Downsample, KeepsOneMeanPointAVoxel) {
+  EXPECT_TRUE(Downsample({}, 0.1).empty());
+  const std::vector<Point> points{{.position = {0.01f, 0, 0}}, {.position = {0.03f, 0, 0}}, {.position = {-0.01f, 0, 0}}};
+  const std::vector<Point> thin = Downsample(points, 0.1);
+  ASSERT_EQ(thin.size(), 2u);
+  EXPECT_NEAR(thin[0].position.x(), 0.02f, 1e-7f);
+  EXPECT_NEAR(thin[1].position.x(), -0.01f, 1e-7f);
+}
+
+}  // namespace
+}  // namespace merlin
