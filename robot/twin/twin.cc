@@ -41,6 +41,7 @@ class TwinDepth final : public DepthCamera {
         outbox_(FromSeconds(options.depth.sheet.latency_s)) {
     Configure(options.depth.settings);
   }
+  ~TwinDepth() override { worker_.Do([] {}).get(); }  // jobs on their way still need this
 
   void Sample(const sim::World& world) {
     now_ = world.Now();

@@ -1,0 +1,106 @@
+#include "autonomy/avoid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace merlin {
+namespace {
+
+constexpr Footprint kCar{.front_m = 0.45, .half_width_m = 0.16};
+
+std::vector<Eigen::Vector2d> Straight() {
+  std::vector<Eigen::Vector2d> path;
+  for (int i = 0; i < 80; ++i) path.push_back({0.05 * i, 0.0});
+  return path;
+}
+
+// A facing patch of points, 0.4 m wide and high, its middle at (x, y, z).
+Observation Box(double x, double y, double z, double time_s = 0.0) {
+  Observation observation;
+  observation.stamp = FromSeconds(time_s);
+  for (double dy = -0.2; dy <= 0.2; dy += 0.05)
+    for (double dz = -0.2; dz <= 0.2; dz += 0.05)
+      observation.points_base.push_back({.position = Eigen::Vector3d(x, y + dy, z + dz).cast<float>(), .sigma_m = 0.01f});
+  return observation;
+}
+
+TEST(Avoid, MeasuresTheFreeWayToABoxFromTheCarsFront) {
+  Avoid avoid(kCar, {});
+  const auto way = avoid.FreeWay_m(Box(3.0, 0.0, 0.3), Straight());
+  ASSERT_TRUE(way);
+  EXPECT_NEAR(*way, 3.0 - 0.45, 0.05);
+}
+
+TEST(Avoid, IgnoresWhatIsBesideAboveAndOnTheFloor) {
+  Avoid avoid(kCar, {});
+  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.5, 0.3), Straight()));    // its edge is 0.3 m to the side, the car needs 0.24
+  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.0, 1.0), Straight()));
+  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.0, -0.15), Straight()));  // up to 0.05 m high
+  EXPECT_FALSE(avoid.FreeWay_m(Observation{}, Straight()));
+  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.0, 0.3), {}));
+}
+
+TEST(Avoid, FollowsThePathAroundACorner) {
+  std::vector<Eigen::Vector2d> path;  // a quarter circle to the left, radius 2 m
+  for (double a = 0.0; a < 1.57; a += 0.025) path.push_back({2.0 * std::sin(a), 2.0 * (1.0 - std::cos(a))});
+  Avoid avoid(kCar, {});
+  EXPECT_FALSE(avoid.FreeWay_m(Box(3.0, 0.0, 0.3), path));
+  const auto way = avoid.FreeWay_m(Box(2.0, 2.0, 0.3), path);
+  ASSERT_TRUE(way);
+  EXPECT_NEAR(*way, 2.0 * 1.4 - 0.45, 0.25);
+}
+
+TEST(Avoid, DoesNotStopForThreePointsOfNoise) {
+  Observation observation;
+  for (int i = 0; i < 3; ++i) observation.points_base.push_back({.position = {1.0f, 0.0f, 0.3f}, .sigma_m = 0.01f});
+  EXPECT_FALSE(Avoid(kCar, {}).FreeWay_m(observation, Straight()));
+}
+
+TEST(Avoid, TakesManySaturatedPixelsAheadForSomethingClose) {
+  Observation observation;
+  observation.saturated_base.assign(50, Eigen::Vector3f::UnitX());
+  EXPECT_EQ(Avoid(kCar, {}).FreeWay_m(observation, Straight()), 0.0);
+  observation.saturated_base.assign(50, Eigen::Vector3f(0.8f, 0.6f, 0.0f));  // to the side
+  EXPECT_FALSE(Avoid(kCar, {}).FreeWay_m(observation, Straight()));
+}
+
+TEST(Avoid, RemembersAnObstacleThatDropsOutOfSightForAMoment) {
+  Avoid avoid(kCar, {});
+  ASSERT_TRUE(avoid.FreeWay_m(Box(2.0, 0.0, 0.3, 0.0), Straight()));
+  Observation blind;
+  blind.stamp = FromSeconds(0.3);
+  blind.T_odom_base = FromXyYaw(0.15, 0.0, 0.0);
+  const auto way = avoid.FreeWay_m(blind, Straight());
+  ASSERT_TRUE(way);
+  EXPECT_NEAR(*way, 2.0 - 0.45 - 0.15, 0.05);
+  blind.stamp = FromSeconds(1.0);
+  EXPECT_FALSE(avoid.FreeWay_m(blind, Straight()));
+}
+
+TEST(Avoid, LimitsTheSpeedSoThatBrakingEndsAtTheGap) {
+  const AvoidConfig config;
+  const Avoid avoid(kCar, config);
+  EXPECT_EQ(avoid.SpeedLimit_m_s(std::nullopt), HUGE_VAL);
+  EXPECT_EQ(avoid.SpeedLimit_m_s(0.0), 0.0);
+  EXPECT_EQ(avoid.SpeedLimit_m_s(config.stop_gap_m), 0.0);
+  // v^2 = 2 a s: 0.4 m before the gap, at 0.5 m/s^2.
+  EXPECT_NEAR(avoid.SpeedLimit_m_s(config.stop_gap_m + 0.4), std::sqrt(0.4), 1e-12);
+}
+
+TEST(Footprint, ReachesToTheFarthestCollisionShapeInTheBaseFrame) {
+  CarDescription car;
+  car.links.resize(2);
+  car.links[0].name = car.links[1].parent = "base_link";
+  car.links[1].name = "nose";
+  car.links[1].T_parent_link.translation() = Eigen::Vector3d(0.3, 0.0, 0.1);
+  CarShape box;
+  box.size_m = {0.2, 0.3, 0.1};
+  box.T_link_shape.translation() = Eigen::Vector3d(0.05, 0.0, 0.0);
+  car.links[1].collision.push_back(box);
+  EXPECT_NEAR(FootprintOf(car).front_m, 0.45, 1e-12);
+  EXPECT_NEAR(FootprintOf(car).half_width_m, 0.15, 1e-12);
+}
+
+}  // namespace
+}  // namespace merlin
