@@ -10,6 +10,7 @@
 namespace merlin::sim {
 
 // Adds noise in place: variance of a value v is v * gain + read_noise^2 (8-bit counts), rounded and clipped to 0..255.
-void AddColorNoise(std::vector<std::uint8_t>& bgr, const ColorCameraSheet& sheet, std::uint64_t seed, std::uint64_t frame);
+void AddColorNoise(std::vector<std::uint8_t>& bgr, const ColorCameraSheet& sheet, std::uint64_t seed,
+                   std::uint64_t frame);
 
 }  // namespace merlin::sim

@@ -1,5 +1,5 @@
 // MuJoCo's OpenGL renderer without a display: EGL (Mesa surfaceless) or OSMesa, chosen and loaded at run time.
-// MuJoCo binds GL once a process: one back end per process. All calls from one thread at a time.
+// MuJoCo binds GL once a process: one back end per process. Any thread may call, one at a time.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -21,20 +21,21 @@ class RenderSnapshot {
  public:
   explicit RenderSnapshot(const mjModel* model);
   ~RenderSnapshot();
+  // Camera: optical frame, its pinhole part only (no distortion). Keeps what can be in that camera's picture.
   void Take(const mjModel* model, const mjData* data, const Pose& T_world_camera, const CameraModel& camera);
   mjvScene scene;
 };
 
 class Renderer {
  public:
-  // Opens the back end (kAuto: EGL, else OSMesa) and an offscreen buffer of the camera's size, no multisampling, no shadows.
-  // Throws MachineError when it cannot, naming what was tried. gl must not be kOff.
+  // Opens the back end (kAuto: EGL, else OSMesa) and an offscreen buffer of the camera's size, no multisampling, no
+  // shadows. Throws MachineError when it cannot, naming what was tried. gl must not be kOff.
   Renderer(const mjModel* model, const CameraModel& camera, Gl gl);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // The pinhole picture, BGR, upper left first; out holds width * height * 3 bytes.
+  // The pinhole picture as the snapshot's camera saw it, BGR, upper left first; out holds width * height * 3 bytes.
   void Draw(RenderSnapshot& snapshot, std::span<std::uint8_t> bgr);
 
   // "EGL: llvmpipe (LLVM 15.0.6, 256 bits)"
