@@ -41,7 +41,7 @@ class YamlReader {
   // Reads the whole config, unknown keys included.
   template <class Config>
   void ReadInto(Config& config) {
-    if (!node_.IsMap()) return Fault(node_, path_.empty() ? "the file" : path_, "expected a map of keys");
+    if (!node_.IsMap()) return Fault(node_, path_.empty() ? "the file" : path_.substr(0, path_.size() - 1), "expected a map of keys");
     Visit(*this, config);
     for (const auto& entry : node_) {
       const std::string key = entry.first.Scalar();
