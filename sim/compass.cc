@@ -1,1 +1,32 @@
 #include "sim/compass.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "sim/random.h"
+
+namespace merlin::sim {
+namespace {
+
+double WrapHalfOpen(double angle_rad) {  // (-pi, pi]
+  const double wrapped = WrapPi(angle_rad);
+  return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
+}
+
+}  // namespace
+
+CompassReading ReadCompass(const Pose& T_world_base, const CompassConfig& config, std::uint64_t seed, Time stamp,
+                           std::uint64_t index) {
+  // R = Rz(yaw) Ry(pitch) Rx(roll), solved for the angles (Craig, "Introduction to robotics", eq. 2.66).
+  const Eigen::Matrix3d R = T_world_base.linear();
+  Random random(seed, Sensor::kCompass, index);
+  const double roll_rad = std::atan2(R(2, 1), R(2, 2));
+  const double pitch_rad = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
+  const double yaw_rad = std::atan2(R(1, 0), R(0, 0));
+  return {.stamp = stamp,
+          .roll_rad = WrapHalfOpen(roll_rad + config.tilt_noise_rad * random.Normal()),
+          .pitch_rad = WrapHalfOpen(pitch_rad + config.tilt_noise_rad * random.Normal()),
+          .yaw_rad = WrapHalfOpen(yaw_rad + config.yaw_noise_rad * random.Normal())};
+}
+
+}  // namespace merlin::sim

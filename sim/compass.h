@@ -19,6 +19,9 @@ void Visit(Visitor& v, CompassConfig& c) {
   v("tilt_noise_rad", c.tilt_noise_rad, {0.0, 0.2});
 }
 
-CompassReading ReadCompass(const Pose& T_world_base, const CompassConfig& config, std::uint64_t seed, Time stamp, std::uint64_t index);
+// The index-th reading. All three angles in (-pi, pi]. Nose straight up or down (pitch +-pi/2) roll and yaw are not
+// defined, as on any such sensor.
+CompassReading ReadCompass(const Pose& T_world_base, const CompassConfig& config, std::uint64_t seed, Time stamp,
+                           std::uint64_t index);
 
 }  // namespace merlin::sim

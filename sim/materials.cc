@@ -1,1 +1,118 @@
 #include "sim/materials.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "robot/types/error.h"
+#include "robot/types/nearest_name.h"
+
+namespace merlin::sim {
+namespace {
+
+constexpr std::array<std::string_view, 2> kFileKeys{"default", "materials"};
+constexpr std::array<std::string_view, 1> kMaterialKeys{"nir_albedo"};
+
+// Collects every fault of one file, so that a person mends them in one go.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : file_(file.string()) {}
+
+  Materials Read(const YAML::Node& root) {
+    Materials materials;
+    if (!root.IsMap() || !root["materials"]) {
+      Fault(root, "no materials in the file", "a map with the key 'materials'");
+    }
+    if (root.IsMap()) {
+      CheckKeys(root, kFileKeys);
+      if (root["default"]) materials.fallback = ReadMaterial("default", root["default"]);
+      if (root["materials"]) materials.by_name = ReadByName(root["materials"]);
+    }
+    if (!faults_.empty()) throw InputError(faults_);
+    return materials;
+  }
+
+ private:
+  void Fault(const YAML::Node& node, const std::string& what, const std::string& expected,
+             const std::string& got = "") {
+    const auto where = node.Mark().is_null() ? file_ : fmt::format("{}:{}", file_, node.Mark().line + 1);
+    if (!faults_.empty()) faults_ += "\n";
+    faults_ += InputError(where, what, expected, got).what();
+  }
+
+  void CheckKeys(const YAML::Node& map, std::span<const std::string_view> known) {
+    for (const auto& entry : map) {
+      const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+      if (std::ranges::find(known, key) == known.end()) {
+        Fault(entry.first, fmt::format("unknown key '{}'", key), fmt::format("'{}'", NearestName(key, known)));
+      }
+    }
+  }
+
+  std::map<std::string, Material> ReadByName(const YAML::Node& map) {
+    std::map<std::string, Material> by_name;
+    if (!map.IsMap()) {
+      Fault(map, "'materials' is not a map", "name: {nir_albedo: number}");
+      return by_name;
+    }
+    for (const auto& entry : map) {
+      const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
+      if (!by_name.emplace(name, ReadMaterial(name, entry.second)).second) {
+        Fault(entry.first, fmt::format("material '{}' is listed twice", name), "each name once");
+      }
+    }
+    return by_name;
+  }
+
+  Material ReadMaterial(const std::string& name, const YAML::Node& node) {
+    Material material;
+    if (!node.IsMap()) {
+      Fault(node, fmt::format("material '{}' is not a map", name), "{nir_albedo: number}");
+      return material;
+    }
+    CheckKeys(node, kMaterialKeys);
+    const YAML::Node albedo = node["nir_albedo"];
+    const std::string what = fmt::format("nir_albedo of material '{}'", name);
+    if (!albedo) {
+      Fault(node, what + " is missing", "a number in [0, 1]");
+    } else if (!albedo.IsScalar() || !YAML::convert<double>::decode(albedo, material.nir_albedo) ||
+               !(material.nir_albedo >= 0.0 && material.nir_albedo <= 1.0)) {
+      Fault(albedo, what, "a number in [0, 1]", albedo.IsScalar() ? albedo.Scalar() : "no number");
+    }
+    return material;
+  }
+
+  std::string file_;
+  std::string faults_;
+};
+
+}  // namespace
+
+Materials ReadMaterials(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!std::filesystem::is_regular_file(file) || !stream) {
+    throw InputError(file.string(), "cannot be read", "a readable file of materials");
+  }
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  try {
+    return Reader(file).Read(YAML::Load(text));
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format("{}:{}", file.string(), error.mark.line + 1), "broken YAML: " + error.msg);
+  }
+}
+
+std::vector<double> GeomAlbedos(const mjModel* model, const Materials& materials) {
+  std::vector<double> albedos;
+  for (int geom = 0; geom < model->ngeom; ++geom) {
+    const int material = model->geom_matid[geom];
+    const char* name = material < 0 ? "" : mj_id2name(model, mjOBJ_MATERIAL, material);
+    albedos.push_back(materials.Find(name == nullptr ? "" : name).nir_albedo);
+  }
+  return albedos;
+}
+
+}  // namespace merlin::sim

@@ -2,9 +2,12 @@
 // material, never derived from a visible colour.
 #pragma once
 
+#include <mujoco/mujoco.h>
+
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace merlin::sim {
 
@@ -22,7 +25,12 @@ struct Materials {
   }
 };
 
-// Throws InputError (file, line, what) for what it cannot read, an unknown key, or an albedo outside [0, 1].
+// File: `default: {nir_albedo: 0.5}` (may be absent) and `materials: {white_wall: {nir_albedo: 0.8}, ...}`.
+// Throws InputError for what it cannot read, an unknown key (names the nearest), a name listed twice, or an albedo that
+// is missing or outside [0, 1]: all faults at once, a line each, with file and line.
 Materials ReadMaterials(const std::filesystem::path& file);
+
+// Near-infrared albedo of every geom of the model, by its material's name.
+std::vector<double> GeomAlbedos(const mjModel* model, const Materials& materials);
 
 }  // namespace merlin::sim

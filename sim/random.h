@@ -13,15 +13,17 @@ std::array<std::uint32_t, 4> Philox4x32(std::array<std::uint32_t, 4> counter, st
 
 enum class Sensor : std::uint32_t { kDepth = 1, kColor = 2, kCompass = 3, kDrive = 4 };
 
-// The stream of one pixel (or one reading) of one frame of one sensor.
+// The stream of one pixel (or one reading) of one frame of one sensor. frame < 2^40 (348 years at 100 Hz); 2^34 draws.
 class Random {
  public:
   Random(std::uint64_t seed, Sensor sensor, std::uint64_t frame, std::uint32_t pixel = 0, std::uint16_t purpose = 0);
-  double Uniform();              // (0, 1)
-  double Normal();               // mean 0, sigma 1
-  double Poisson(double mean);   // mean >= 0; a Gaussian of the same variance above 50
+  double Uniform();             // (0, 1), in steps of 2^-32
+  double Normal();              // mean 0, sigma 1
+  double Poisson(double mean);  // mean >= 0; a Gaussian of the same variance above 50
+
  private:
-  std::array<std::uint32_t, 4> counter_;
+  std::array<std::uint32_t, 4>
+      counter_;  // block, pixel, frame's low 32 bits, purpose (16) | sensor (8) | frame's high 8
   std::array<std::uint32_t, 2> key_;
   std::array<std::uint32_t, 4> block_{};
   int used_ = 4;

@@ -38,7 +38,7 @@ struct DepthCameraSheet {
   CameraModel camera;
   double rate_max_hz = 0.0;
   double latency_s = 0.0;               // from mid-exposure to the stack: read-out, bus, driver
-  double signal_e_m2_per_us = 0.0;      // K of tof.md section 2: electrons of both taps = K rho cos(theta) T / d^2
+  double signal_e_m2_per_us = 0.0;      // K: electrons of both taps in one sub-frame = K rho cos(theta) T / d^2
   double contrast_at_20mhz = 0.0;       // C, demodulation contrast
   double contrast_corner_hz = 0.0;      // f_c of C(f) = C0 / sqrt(1 + (f / f_c)^2)
   double read_noise_e = 0.0;            // per tap, one sigma
@@ -83,7 +83,7 @@ struct DepthFrame {
   int height = 0;
   std::vector<float> range_m;       // along the ray, [0, c / 2f); what lies beyond wraps
   std::vector<float> amplitude;     // electrons: sqrt(I^2 + Q^2) / 2 = C N_s
-  std::vector<float> intensity;     // electrons: mean of the eight taps x 1/2, tof.md section 0
+  std::vector<float> intensity;     // electrons: the sum of the eight taps / 8: half of what a pixel collects in a sub-frame
   std::vector<std::uint8_t> flags;  // DepthFlag bits
 
   std::size_t size() const { return range_m.size(); }

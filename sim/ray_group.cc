@@ -1,0 +1,156 @@
+#include "sim/ray_group.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "robot/types/error.h"
+
+namespace merlin::sim {
+namespace {
+
+constexpr mjtNum kInfinitePlane_m = 1000.0;  // half edge of a plane that MJCF calls infinite (size 0)
+
+bool IsStatic(const mjModel* model, int body) { return model->body_weldid[body] == 0; }
+
+// As mj_ray has it: where there is a material, its alpha counts and not the geom's.
+bool IsVisible(const mjModel* model, int geom) {
+  const int material = model->geom_matid[geom];
+  const float alpha = material < 0 ? model->geom_rgba[4 * geom + 3] : model->mat_rgba[4 * material + 3];
+  return model->geom_group[geom] >= 0 && model->geom_group[geom] <= 2 && alpha > 0.0f;
+}
+
+void AddQuad(RayGroup& group, int geom, unsigned a, unsigned b, unsigned c, unsigned d) {
+  group.triangles.push_back({a, b, c});
+  group.triangles.push_back({a, c, d});
+  group.geom_of_triangle.insert(group.geom_of_triangle.end(), 2, geom);
+}
+
+void AddPlane(RayGroup& group, int geom, const mjtNum* size) {
+  const float x = static_cast<float>(size[0] > 0.0 ? size[0] : kInfinitePlane_m);
+  const float y = static_cast<float>(size[1] > 0.0 ? size[1] : kInfinitePlane_m);
+  group.vertices = {{-x, -y, 0.0f}, {x, -y, 0.0f}, {x, y, 0.0f}, {-x, y, 0.0f}};
+  group.one_sided = true;
+  AddQuad(group, geom, 0, 1, 2, 3);
+}
+
+void AddBox(RayGroup& group, int geom, const mjtNum* size, const Pose& T_group_geom) {
+  const unsigned first = static_cast<unsigned>(group.vertices.size());
+  for (unsigned corner = 0; corner < 8; ++corner) {  // bit i of the corner: the positive side of axis i
+    const Eigen::Vector3d sign((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? 1 : -1);
+    group.vertices.push_back((T_group_geom * sign.cwiseProduct(Eigen::Vector3d(size))).cast<float>());
+  }
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const unsigned u = 1u << ((axis + 1) % 3), v = 1u << ((axis + 2) % 3);
+    for (const unsigned side : {0u, 1u << axis}) {
+      AddQuad(group, geom, first + side, first + side + u, first + side + u + v, first + side + v);
+    }
+  }
+}
+
+void AddMesh(RayGroup& group, const mjModel* model, int geom, const Pose& T_group_geom) {
+  const int mesh = model->geom_dataid[geom];
+  const unsigned first = static_cast<unsigned>(group.vertices.size());
+  for (int i = 0; i < model->mesh_vertnum[mesh]; ++i) {
+    const Eigen::Map<const Eigen::Vector3f> vertex(model->mesh_vert + 3 * (model->mesh_vertadr[mesh] + i));
+    group.vertices.push_back((T_group_geom * vertex.cast<double>()).cast<float>());
+  }
+  for (int i = 0; i < model->mesh_facenum[mesh]; ++i) {
+    const int* face = model->mesh_face + 3 * (model->mesh_faceadr[mesh] + i);
+    const auto vertex = [&](int corner) { return first + static_cast<unsigned>(face[corner]); };
+    group.triangles.push_back({vertex(0), vertex(1), vertex(2)});
+    group.geom_of_triangle.push_back(geom);
+  }
+}
+
+void AddCurved(RayGroup& group, const mjModel* model, int geom, const Pose& T_group_geom) {
+  CurvedGeom curved{.geom = geom, .type = model->geom_type[geom], .position = {}, .rotation = {}, .size = {}};
+  Eigen::Map<Eigen::Vector3d>(curved.position) = T_group_geom.translation();
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(curved.rotation) = T_group_geom.linear();
+  std::copy_n(model->geom_size + 3 * geom, 3, curved.size);
+  group.curved.push_back(curved);
+}
+
+void AddGeom(RayGroup& group, const mjModel* model, int geom, const Pose& T_group_geom) {
+  const mjtNum* size = model->geom_size + 3 * geom;
+  switch (model->geom_type[geom]) {
+    case mjGEOM_PLANE:
+      return AddPlane(group, geom, size);
+    case mjGEOM_BOX:
+      return AddBox(group, geom, size, T_group_geom);
+    case mjGEOM_MESH:
+      return AddMesh(group, model, geom, T_group_geom);
+    case mjGEOM_SPHERE:
+    case mjGEOM_CAPSULE:
+    case mjGEOM_CYLINDER:
+    case mjGEOM_ELLIPSOID:
+      return AddCurved(group, model, geom, T_group_geom);
+    default:
+      const char* name = mj_id2name(model, mjOBJ_GEOM, geom);
+      throw InputError(
+          fmt::format("geom '{}'", name ? name : std::to_string(geom)), "the depth camera cannot see this type of geom",
+          "plane, sphere, capsule, ellipsoid, cylinder, box or mesh", "a height field or signed distance field");
+  }
+}
+
+}  // namespace
+
+Pose ToPose(const mjtNum* position, const mjtNum* quaternion_wxyz) {
+  const Eigen::Quaterniond q(quaternion_wxyz[0], quaternion_wxyz[1], quaternion_wxyz[2], quaternion_wxyz[3]);
+  return Eigen::Translation3d(position[0], position[1], position[2]) * q.normalized();
+}
+
+std::vector<Pose> ReferencePoses(const mjModel* model) {
+  std::vector<Pose> poses;
+  for (int b = 0; b < model->nbody; ++b) {
+    const Pose T_parent_body = ToPose(model->body_pos + 3 * b, model->body_quat + 4 * b);
+    const auto parent = static_cast<std::size_t>(model->body_parentid[b]);
+    poses.push_back(b == 0 ? Pose::Identity() : Pose(poses[parent] * T_parent_body));
+  }
+  return poses;
+}
+
+Eigen::Vector3d HalfEdges(const CurvedGeom& curved) {
+  const mjtNum* s = curved.size;
+  switch (curved.type) {
+    case mjGEOM_SPHERE:
+      return {s[0], s[0], s[0]};
+    case mjGEOM_CAPSULE:
+      return {s[0], s[0], s[0] + s[1]};
+    case mjGEOM_CYLINDER:
+      return {s[0], s[0], s[1]};
+    default:  // ellipsoid
+      return {s[0], s[1], s[2]};
+  }
+}
+
+std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& skip_body) {
+  const std::vector<Pose> reference = ReferencePoses(model);
+  std::deque<RayGroup> groups;
+  std::vector<RayGroup*> group_of_body(static_cast<std::size_t>(model->nbody), nullptr);  // [0]: all statics
+  for (int geom = 0; geom < model->ngeom; ++geom) {
+    const int geom_body = model->geom_bodyid[geom];
+    if (skip_body[static_cast<std::size_t>(geom_body)] || !IsVisible(model, geom)) continue;
+    const int body = IsStatic(model, geom_body) ? 0 : geom_body;
+    Pose T_body_geom = ToPose(model->geom_pos + 3 * geom, model->geom_quat + 4 * geom);
+    if (body == 0) T_body_geom = reference[static_cast<std::size_t>(geom_body)] * T_body_geom;
+
+    if (model->geom_type[geom] == mjGEOM_PLANE) {
+      RayGroup& group = groups.emplace_back();
+      group.body = body;
+      group.T_body_group = T_body_geom;
+      AddGeom(group, model, geom, Pose::Identity());
+      continue;
+    }
+    RayGroup*& group = group_of_body[static_cast<std::size_t>(body)];
+    if (group == nullptr) {
+      group = &groups.emplace_back();
+      group->body = body;
+    }
+    AddGeom(*group, model, geom, T_body_geom);
+  }
+  return groups;
+}
+
+}  // namespace merlin::sim

@@ -1,0 +1,49 @@
+// What the rays meet, as MuJoCo's model has it: its visible geoms, grouped by what moves together.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "robot/types/se3.h"
+
+namespace merlin::sim {
+
+// A sphere, capsule, cylinder or ellipsoid: MuJoCo itself intersects it.
+struct CurvedGeom {
+  int geom;
+  int type;
+  mjtNum position[3];
+  mjtNum rotation[9];
+  mjtNum size[3];
+};
+
+// Half edges [m], in the geom's frame, of the smallest box around it.
+Eigen::Vector3d HalfEdges(const CurvedGeom& curved);
+
+// Geoms that move together. Flat ones are triangles in float; the frame is the body's (statics: the world's; a plane:
+// its own, so that its far corners cost no precision).
+struct RayGroup {
+  int body = 0;
+  Pose T_body_group = Pose::Identity();
+  bool one_sided = false;  // a plane: MuJoCo's are seen from above only
+
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<std::array<unsigned, 3>> triangles;
+  std::vector<int> geom_of_triangle;
+  std::vector<CurvedGeom> curved;
+};
+
+Pose ToPose(const mjtNum* position, const mjtNum* quaternion_wxyz);
+
+// T_world_body of every body before anything has moved.
+std::vector<Pose> ReferencePoses(const mjModel* model);
+
+// One group of all statics, one for each body that moves, one for each plane; without the geoms of bodies for which
+// skip_body is true. Throws InputError for a geom of a type that is neither flat nor curved (height field, SDF).
+std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& skip_body);
+
+}  // namespace merlin::sim
