@@ -32,7 +32,9 @@ int Main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kPass : kBadInput;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::fprintf(stderr, "merlin: %s (--help tells more)\n", error.what());
+    return kBadInput;
   }
   return exit_code;
 }

@@ -20,8 +20,7 @@ namespace {
 
 struct Arguments {
   std::string scenario, out, robot = "twin", pace = "fast", gl = "auto";
-  std::optional<std::uint64_t> seed;
-  std::optional<double> duration_s;
+  std::string seed, duration_s;  // the scenario's reader checks them
   int threads = 2;
   std::vector<std::string> sets;
   bool json = false;
@@ -104,8 +103,8 @@ int Run(const Arguments& arguments) {
   RunOptions options;
   options.name = std::filesystem::path(arguments.scenario).stem().string();
   std::vector<std::string> sets = arguments.sets;
-  if (arguments.seed) sets.push_back("seed=" + std::to_string(*arguments.seed));
-  if (arguments.duration_s) sets.push_back(fmt::format("duration_s={}", *arguments.duration_s));
+  if (!arguments.seed.empty()) sets.push_back("seed=" + arguments.seed);
+  if (!arguments.duration_s.empty()) sets.push_back("duration_s=" + arguments.duration_s);
   options.scenario = ReadScenario(arguments.scenario, sets);
   if (arguments.robot != "twin") throw InputError("--robot", "this robot is not built in", "twin", "'" + arguments.robot + "'");
   options.out = arguments.out.empty() ? std::filesystem::path("runs") / fmt::format("{}-{}", options.name, options.scenario.seed)
@@ -136,11 +135,20 @@ int Run(const Arguments& arguments) {
 
 }  // namespace
 
+namespace {
+
+std::string WholeNumber(const std::string& text) {
+  const bool whole = !text.empty() && text.size() <= 19 && text.find_first_not_of("0123456789") == std::string::npos;
+  return whole ? "" : "expected a whole number from 0 on, got '" + text + "'";
+}
+
+}  // namespace
+
 void AddRun(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* run = app.add_subcommand("run", "runs a scenario and judges it");
   run->add_option("scenario", arguments->scenario, "a name in scenarios/, or a path")->required();
-  run->add_option("--seed", arguments->seed, "of all randomness; default the scenario's");
+  run->add_option("--seed", arguments->seed, "of all randomness; default the scenario's")->check(WholeNumber);
   run->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-<seed>");
   run->add_option("--robot", arguments->robot, "twin");
   run->add_option("--pace", arguments->pace, "fast (default), real, or a factor of real time");

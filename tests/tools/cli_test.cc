@@ -1,0 +1,141 @@
+// The program as its users meet it: exit codes, one sentence, nothing half-written.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/scenarios/judge/temporary_folder.h"
+
+namespace merlin {
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string said;  // both streams
+};
+
+// The binary under test with these arguments, run in a folder.
+Outcome Merlin(const std::string& arguments, const std::filesystem::path& folder) {
+  const std::string command = "cd '" + folder.string() + "' && '" MERLIN_BINARY "' " + arguments + " 2>&1";
+  Outcome outcome;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 4096> buffer;
+  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) outcome.said.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return outcome;
+}
+
+void ExpectRefused(const std::string& arguments, const std::string& part, const std::filesystem::path& folder) {
+  const Outcome outcome = Merlin(arguments, folder);
+  EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.said;
+  EXPECT_NE(outcome.said.find(part), std::string::npos) << arguments << "\n" << outcome.said;
+  EXPECT_TRUE(!std::filesystem::exists(folder / "runs")) << arguments;
+}
+
+TEST(Cli, HelpFitsAScreen) {
+  const TemporaryFolder folder;
+  for (const char* arguments : {"--help", "run --help", "list --help", "doctor --help"}) {
+    const Outcome outcome = Merlin(arguments, folder.path());
+    EXPECT_EQ(outcome.code, 0) << arguments;
+    EXPECT_LE(std::ranges::count(outcome.said, '\n'), 40) << arguments;
+  }
+}
+
+TEST(Cli, RefusesBadUsageWithExitTwo) {
+  const TemporaryFolder folder;
+  ExpectRefused("", "subcommand", folder.path());
+  ExpectRefused("run", "scenario", folder.path());
+  ExpectRefused("run coridor_loop", "corridor_loop", folder.path());
+  ExpectRefused("run corridor_short --seed x", "--seed", folder.path());
+  ExpectRefused("run corridor_short --seed -1", "--seed", folder.path());
+  ExpectRefused("run corridor_short --threads 0", "--threads", folder.path());
+  ExpectRefused("run corridor_short --gl vulkan", "--gl", folder.path());
+  ExpectRefused("run corridor_short --pace slow", "--pace", folder.path());
+  ExpectRefused("run corridor_short --duration nan", "duration_s", folder.path());
+  ExpectRefused("run corridor_short --robot moon", "--robot", folder.path());
+  ExpectRefused("list planets", "planets", folder.path());
+}
+
+TEST(Cli, RefusesBadScenariosRoomsAndCamerasWithExitTwo) {
+  const TemporaryFolder folder;
+  ExpectRefused("run corridor_short --set room=corridor_26x22", "corridor_26x21", folder.path());
+  ExpectRefused("run corridor_short --set sensors.depth.camera=pmd_3k", "pmd_3k_s", folder.path());
+  ExpectRefused("run corridor_short --set sensors.depth.effects=nois", "noise", folder.path());
+  ExpectRefused("run corridor_short --set sensors.depth.integration_us=9000", "integration", folder.path());
+  ExpectRefused("run corridor_short --set sensors.depth.frequency_mhz=25", "frequency", folder.path());
+  ExpectRefused("run corridor_short --set car.start.y_m=-8.5", "start", folder.path());
+  ExpectRefused("run corridor_short --set car.start.y_m=-10.6", "start", folder.path());
+  std::ofstream(folder.path() / "broken.xml") << "<mujoco>\n<worldbody>\n<geom type='ball'/>\n</worldbody>\n</mujoco>\n";
+  ExpectRefused("run corridor_short --set room=broken.xml", "broken.xml:3", folder.path());
+  std::ofstream(folder.path() / "broken.urdf") << "<robot name='x'>\n<link name='base_link'>\n</robot>\n";
+  ExpectRefused("run corridor_short --set car.model=broken.urdf", "broken.urdf:", folder.path());
+  std::ofstream(folder.path() / "broken.yaml") << "room: hall\nsensors: {depth: {camera: pmd_3k_s}\n";
+  ExpectRefused("run broken.yaml", "broken.yaml:", folder.path());
+}
+
+TEST(Cli, KeepsWhatIsNotARunOfOurs) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "mine");
+  std::ofstream(folder.path() / "mine/letter.txt") << "dear";
+  const Outcome outcome = Merlin("run corridor_short --gl off --duration 1 --out mine", folder.path());
+  EXPECT_EQ(outcome.code, 2) << outcome.said;
+  EXPECT_NE(outcome.said.find("mine"), std::string::npos) << outcome.said;
+  EXPECT_EQ(Contents(folder.path() / "mine/letter.txt"), "dear");
+  std::ofstream(folder.path() / "file") << "x";
+  EXPECT_EQ(Merlin("run corridor_short --gl off --duration 1 --out file", folder.path()).code, 2);
+}
+
+TEST(Cli, ReplacesAnOlderRunWhole) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(Merlin("run corridor_short --gl off --duration 2 --out o", folder.path()).code, 1);  // too short to pass
+  std::ofstream(folder.path() / "o/stale.txt") << "old";
+  EXPECT_EQ(Merlin("run corridor_short --gl off --duration 2 --seed 5 --out o", folder.path()).code, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "o/stale.txt"));
+  EXPECT_NE(Contents(folder.path() / "o/result.json").find("\"seed\": 5"), std::string::npos);
+}
+
+TEST(Cli, StopsWithExitThreeWhereColorIsRequiredAndGlIsOff) {
+  const TemporaryFolder folder;
+  const Outcome outcome = Merlin("run corridor_short --gl off --set sensors.color.required=true", folder.path());
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(std::ranges::count(outcome.said, '\n'), 1) << outcome.said;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "runs"));
+}
+
+TEST(Cli, EndsWithExit130AndAnInterruptedVerdictOnCtrlC) {
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder.path().c_str()) != 0 || !freopen("/dev/null", "w", stdout) || !freopen("said", "w", stderr)) _exit(99);
+    execl(MERLIN_BINARY, "merlin", "run", "corridor_short", "--gl", "off", "--pace", "10", "--out", "o", nullptr);
+    _exit(98);
+  }
+  // The first progress line shows that it drives.
+  const auto drives = [&] { return Contents(folder.path() / "said").find(" s of ") != std::string::npos; };
+  int status = 0;
+  while (!drives() && waitpid(child, &status, WNOHANG) == 0) sched_yield();
+  kill(child, SIGINT);
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_NE(Contents(folder.path() / "o/result.json").find("interrupted"), std::string::npos);
+}
+
+TEST(Cli, ListsWhatThereIs) {
+  const TemporaryFolder folder;
+  const Outcome outcome = Merlin("list", folder.path());
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* name : {"corridor_loop", "corridor_obstacle", "corridor_short", "pmd_3k_s", "ccd", "corridor_26x21", "hall", "follow_corridor"})
+    EXPECT_NE(outcome.said.find(name), std::string::npos) << name;
+}
+
+}  // namespace
+}  // namespace merlin
