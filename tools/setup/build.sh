@@ -1,0 +1,41 @@
+# shellcheck shell=bash
+# Configures and builds one preset, quietly. Sourced by tools/merlin.
+
+# A build folder that another place or another MuJoCo was configured for is configured afresh.
+configured() { # folder
+  [ -e "$1/build.ninja" ] && grep -qxF "MUJOCO_ROOT:PATH=$mujoco_root" "$1/CMakeCache.txt" &&
+    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$top" "$1/CMakeCache.txt"
+}
+
+configure() { # preset
+  local dir=$top/build/$1 log=$top/build/$1/configure.log
+  ! configured "$dir" || return 0
+  mkdir -p "$dir" 2>/dev/null || stop 3 "cannot write in $top/build, where it is built"
+  (cd "$top" && cmake --fresh --preset "$1" "-DMUJOCO_ROOT:PATH=$mujoco_root") >"$log" 2>&1 </dev/null || {
+    grep -A 8 '^CMake Error' "$log" >&2 || tail -n 20 "$log" >&2
+    rm -f "$dir/build.ninja"
+    stop 3 "CMake could not configure the build (log: $log)"
+  }
+}
+
+build() { # preset, targets...
+  local preset=$1 dir=$top/build/$1 log=$top/build/$1/build.log
+  shift
+  configure "$preset"
+  ! ninja -n -C "$dir" "$@" 2>/dev/null | grep -q 'no work to do' || return 0
+  NINJA_STATUS='[%f/%t] ' ninja -C "$dir" "$@" 2>&1 </dev/null | tee "$log" | show_progress "building $preset (log: build/$preset/build.log)" || {
+    # Without ninja's status lines and the compiler's long command lines.
+    awk '/^FAILED: /{command = 1; next} command{command = 0; next} !/^\[|^ninja: /' "$log" | head -n 60 >&2
+    stop 4 "the sources do not build (log: $log)"
+  }
+}
+
+# On a terminal one line that counts, else one line.
+show_progress() { # what
+  local line
+  [ -t 2 ] || say "$1"
+  while IFS= read -r line; do
+    [[ -t 2 && $line =~ ^\[[0-9]+/[0-9]+\] ]] && printf '\r\033[Kmerlin: %s %s' "$1" "${BASH_REMATCH[0]}" >&2
+  done
+  [ ! -t 2 ] || printf '\r\033[K' >&2
+}
