@@ -38,7 +38,8 @@ double AxisYaw(const std::vector<WallPoint>& points, double hint_rad) {
   return WrapPi(hint_rad + std::arg(sum) / 4.0);  // normals are in the hint's frame: arg / 4 is within 45 deg of it
 }
 
-// Distance of the wall on one side (+1 left, -1 right): the fullest bin of points that face it.
+// Distance of the wall on one side (+1 left, -1 right): of the bins at least half as full as the fullest the farthest, since
+// pillars, cabinets and radiators stand before a wall.
 std::optional<double> SideWall(const std::vector<WallPoint>& points, double side, const CorridorConfig& config) {
   std::vector<int> bins(static_cast<std::size_t>(config.side_max_m / kBin_m) + 2, 0);
   for (const WallPoint& point : points) {
@@ -46,11 +47,12 @@ std::optional<double> SideWall(const std::vector<WallPoint>& points, double side
     if (std::abs(point.n.y()) < 0.9 || y < 0.2 || y >= config.side_max_m || point.p.x() > config.look_ahead_m) continue;
     ++bins[static_cast<std::size_t>(y / kBin_m)];
   }
-  std::size_t best = 0;
   int most = 0;
-  for (std::size_t i = 0; i + 1 < bins.size(); ++i)
-    if (bins[i] + bins[i + 1] > most) most = bins[i] + bins[i + 1], best = i;
+  for (std::size_t i = 0; i + 1 < bins.size(); ++i) most = std::max(most, bins[i] + bins[i + 1]);
   if (most < config.wall_voxels_min) return std::nullopt;
+  std::size_t best = bins.size() - 2;
+  while (2 * (bins[best] + bins[best + 1]) < most) --best;
+  if (best > 0 && bins[best - 1] > bins[best + 1]) --best;  // the fuller of the two pairs that share its bin
   double sum = 0.0;
   int count = 0;
   for (const WallPoint& point : points) {

@@ -18,7 +18,7 @@ struct CorridorConfig {
   double height_min_m = 0.12;      // [0, 3] of wall points
   double height_max_m = 1.5;       // [0, 5]
   double side_distance_m = 1.0;    // [0.2, 5] kept from the only wall in sight, until a width is known
-  int wall_voxels_min = 12;        // [1, 1e5] a wall's peak has at least so many; guess
+  int wall_voxels_min = 80;        // [1, 1e5] a wall has at least so many: most of a metre of it; fewer may be a pillar
   double front_half_width_m = 0.6; // [0.1, 5] an end wall covers this much to both sides of the middle
   double opening_m = 0.35;         // [0.05, 5] a side is open if it is free this far beyond the wall's line
 };
