@@ -1,1 +1,301 @@
 #include "sim/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+#include <span>
+#include <stdexcept>
+
+#include "robot/types/error.h"
+#include "sim/car_body.h"
+#include "sim/spec.h"
+
+namespace merlin::sim {
+namespace {
+
+constexpr double kParkingHeight_m = -50.0;  // of obstacles that are away
+constexpr double kFloorSearch_m = 0.5;      // above and below the start's height
+
+// MuJoCo's own handler prints, writes a file and exits.
+void OnMujocoMessage(const mjLogMessage* message) {
+  if (message->level == mjLOG_ERROR) throw std::runtime_error(std::string("MuJoCo: ") + message->subject);
+  // Warnings of a simulation are counted in mjData::warning, where Step looks.
+}
+
+// "file:12" where the message names a line of that file, else "file".
+std::string Where(const std::filesystem::path& file, const std::string& message) {
+  std::smatch line;
+  const std::regex pattern("line[ =:]*([0-9]+)", std::regex::icase);
+  return std::regex_search(message, line, pattern) ? fmt::format("{}:{}", file.string(), line[1].str()) : file.string();
+}
+
+std::string OneLine(std::string text) {
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text;
+}
+
+SpecPtr ParseRoom(const std::filesystem::path& room) {
+  if (!std::filesystem::is_regular_file(room)) throw InputError(room.string(), "no such room", "an MJCF file");
+  char error[1024] = "";
+  SpecPtr spec(mj_parseXML(room.c_str(), nullptr, error, sizeof error), mj_deleteSpec);
+  if (!spec) throw InputError(Where(room, error), "not a room (MJCF): " + OneLine(error));
+  return spec;
+}
+
+// The physics that the car was tuned with, and nothing of the room's that would change the car.
+void SetOptions(mjSpec* spec) {
+  spec->option.timestep = Seconds(World::kStep);
+  spec->option.integrator = mjINT_IMPLICITFAST;
+  spec->option.cone = mjCONE_ELLIPTIC;
+  spec->option.impratio = 10.0;
+  spec->option.solver = mjSOL_NEWTON;
+  spec->option.disableflags |= mjDSBL_AUTORESET;  // else a bad number restarts the simulation silently
+  spec->compiler.inertiafromgeom = mjINERTIAFROMGEOM_AUTO;
+  spec->compiler.settotalmass = -1.0;
+  spec->compiler.fusestatic = 0;
+  spec->compiler.discardvisual = 0;
+}
+
+// Whether a point lies inside a geom; meshes, height fields and planes are left to contact detection.
+bool Inside(const mjModel* model, const mjData* data, int geom, const mjtNum point_world[3]) {
+  mjtNum offset[3], p[3];
+  mju_sub3(offset, point_world, data->geom_xpos + 3 * geom);
+  mju_mulMatTVec3(p, data->geom_xmat + 9 * geom, offset);
+  const mjtNum* size = model->geom_size + 3 * geom;
+  switch (model->geom_type[geom]) {
+    case mjGEOM_BOX:
+      return std::abs(p[0]) <= size[0] && std::abs(p[1]) <= size[1] && std::abs(p[2]) <= size[2];
+    case mjGEOM_SPHERE:
+      return mju_norm3(p) <= size[0];
+    case mjGEOM_ELLIPSOID:
+      return std::hypot(p[0] / size[0], p[1] / size[1], p[2] / size[2]) <= 1.0;
+    case mjGEOM_CYLINDER:
+      return std::hypot(p[0], p[1]) <= size[0] && std::abs(p[2]) <= size[1];
+    case mjGEOM_CAPSULE:
+      return std::hypot(p[0], p[1], std::max(0.0, std::abs(p[2]) - size[1])) <= size[0];
+    default:
+      return false;
+  }
+}
+
+std::string GeomName(const mjModel* model, int geom) {
+  const char* name = mj_id2name(model, mjOBJ_GEOM, geom);
+  return name != nullptr ? name : fmt::format("geom {}", geom);
+}
+
+std::string ObstacleName(const std::string& name) { return "obstacle_" + name; }
+
+}  // namespace
+
+World::World(const WorldOptions& options) {
+  mju_setLogHandler(OnMujocoMessage);
+  SpecPtr spec = ParseRoom(options.room);
+  SetOptions(spec.get());
+  car_body::AddTo(spec.get(), options.car, options.T_world_start);
+  drivetrain::AddTo(spec.get(), options.car);
+  AddObstacles(spec.get(), options.obstacles);
+  model_.reset(mj_compile(spec.get(), nullptr));
+  if (!model_) {
+    const std::string error = OneLine(mjs_getError(spec.get()));
+    throw InputError(Where(options.room, error), "the room with the car in it does not compile: " + error);
+  }
+  data_.reset(mj_makeData(model_.get()));
+  if (!data_) throw std::runtime_error("MuJoCo cannot make its data: out of memory");
+  ReadNumerics(options.room.string());
+  NameParts(options.car, options.obstacles);
+  PutOnFloor(options);
+  mj_forward(model_.get(), data_.get());
+  RefuseStartInContact(options);
+  drive_ = drivetrain::Controller(model_.get(), options.car);
+}
+
+World::~World() = default;
+
+void World::AddObstacles(mjSpec* spec, const std::vector<Obstacle>& obstacles) const {
+  const BuiltinDefaults plain;
+  for (const Obstacle& obstacle : obstacles) {
+    if (!(obstacle.size_m.array() > 0.0).all() || !obstacle.size_m.allFinite())
+      throw InputError("obstacle '" + obstacle.name + "'", "size", "three positive lengths");
+    mjsBody* body = mjs_addBody(mjs_findBody(spec, "world"), plain.get());
+    SetName(body->element, ObstacleName(obstacle.name));
+    body->mocap = 1;
+    body->pos[2] = kParkingHeight_m;
+    mjsGeom* geom = mjs_addGeom(body, plain.get());
+    SetName(geom->element, ObstacleName(obstacle.name));
+    geom->type = mjGEOM_BOX;
+    Eigen::Vector3d::Map(geom->size) = obstacle.size_m / 2.0;
+    geom->pos[2] = obstacle.size_m.z() / 2.0;
+    if (obstacle.material.empty()) continue;
+    if (mjs_findElement(spec, mjOBJ_MATERIAL, obstacle.material.c_str()) == nullptr)
+      SetName(mjs_addMaterial(spec, plain.get())->element, obstacle.material);
+    mjs_setString(geom->material, obstacle.material.c_str());
+  }
+}
+
+void World::ReadNumerics(const std::string& room) {
+  const auto numbers = [this](const char* name) -> std::span<const mjtNum> {
+    const int id = mj_name2id(model_.get(), mjOBJ_NUMERIC, name);
+    if (id < 0) return {};
+    return {model_->numeric_data + model_->numeric_adr[id], static_cast<std::size_t>(model_->numeric_size[id])};
+  };
+  const auto plan = numbers("plan_xy_m");
+  if (plan.size() % 2 != 0 || (!plan.empty() && plan.size() < 6))
+    throw InputError(room, "numeric plan_xy_m", "x and y of three corners or more",
+                     fmt::format("{} numbers", plan.size()));
+  for (std::size_t i = 0; i < plan.size(); i += 2) plan_xy_m_.emplace_back(plan[i], plan[i + 1]);
+  if (const auto north = numbers("north_yaw_rad"); !north.empty()) north_yaw_rad_ = north[0];
+}
+
+void World::NameParts(const CarDescription& car, const std::vector<Obstacle>& obstacles) {
+  const auto body_id = [this](const std::string& name) { return mj_name2id(model_.get(), mjOBJ_BODY, name.c_str()); };
+  base_body_ = body_id(car.links[0].name);
+  wheel_radius_m_ = car.wheel_radius_m;
+  std::vector<bool> wheel_bodies(model_->nbody, false);
+  for (const CarLink& link : car.links)
+    if (car_body::IsWheel(link)) wheel_bodies[body_id(link.name)] = true;
+  for (int geom = 0; geom < model_->ngeom; ++geom) {
+    const int body = model_->geom_bodyid[geom];
+    const char* name = mj_id2name(model_.get(), mjOBJ_GEOM, geom);
+    is_car_.push_back(model_->body_rootid[body] == base_body_);
+    is_wheel_.push_back(wheel_bodies[body]);
+    is_floor_.push_back(!is_car_.back() && name != nullptr && std::string_view(name).starts_with("floor"));
+  }
+  for (const Obstacle& obstacle : obstacles) obstacle_bodies_[obstacle.name] = body_id(ObstacleName(obstacle.name));
+}
+
+void World::PutOnFloor(const WorldOptions& options) {
+  const std::string room = options.room.string();
+  if (std::find(is_floor_.begin(), is_floor_.end(), true) == is_floor_.end())
+    throw InputError(room, "the room has no floor", "a geom named floor*");
+  mj_kinematics(model_.get(), data_.get());
+  const Eigen::Vector3d start = options.T_world_start.translation();
+  const mjtNum from[3] = {start.x(), start.y(), start.z() + kFloorSearch_m}, down[3] = {0.0, 0.0, -1.0};
+  double nearest_m = 2.0 * kFloorSearch_m;
+  bool found = false;
+  for (int geom = 0; geom < model_->ngeom; ++geom) {
+    if (!is_floor_[geom]) continue;
+    const mjtNum *pos = data_->geom_xpos + 3 * geom, *mat = data_->geom_xmat + 9 * geom;
+    mjtNum range_m = -1.0;
+    if (model_->geom_type[geom] == mjGEOM_MESH)
+      range_m = mj_rayMesh(model_.get(), data_.get(), geom, from, down, nullptr);
+    else if (model_->geom_type[geom] == mjGEOM_HFIELD)
+      range_m = mj_rayHfield(model_.get(), data_.get(), geom, from, down, nullptr);
+    else
+      range_m = mju_rayGeom(pos, mat, model_->geom_size + 3 * geom, from, down, model_->geom_type[geom], nullptr);
+    if (range_m < 0.0 || range_m > nearest_m) continue;
+    nearest_m = range_m;
+    found = true;
+  }
+  if (!found)
+    throw InputError(room, "the car does not start on the floor", "a geom named floor* below the start",
+                     fmt::format("nothing at x {} m, y {} m", start.x(), start.y()));
+  data_->qpos[model_->jnt_qposadr[model_->body_jntadr[base_body_]] + 2] = start.z() + kFloorSearch_m - nearest_m;
+}
+
+void World::RefuseStartInContact(const WorldOptions& options) const {
+  const Eigen::Vector3d start = options.T_world_start.translation();
+  const auto refuse = [&](const std::string& part, const std::string& other) {
+    throw InputError(options.room.string(), fmt::format("the car cannot start at x {} m, y {} m", start.x(), start.y()),
+                     "a free place", fmt::format("its {} in '{}'", part, other));
+  };
+  if (const auto touches = CarTouches(); !touches.empty()) refuse(touches[0].car_geom, touches[0].other_geom);
+  // A part wholly inside a solid has no contact with its surface.
+  for (int part = 0; part < model_->ngeom; ++part) {
+    if (!is_car_[part] || model_->geom_contype[part] == 0) continue;
+    for (int other = 0; other < model_->ngeom; ++other) {
+      const bool meets = (model_->geom_contype[part] & model_->geom_conaffinity[other]) != 0 ||
+                         (model_->geom_contype[other] & model_->geom_conaffinity[part]) != 0;
+      if (meets && !is_car_[other] && Inside(model_.get(), data_.get(), other, data_->geom_xpos + 3 * part))
+        refuse(GeomName(model_.get(), part), GeomName(model_.get(), other));
+    }
+  }
+}
+
+void World::Step() {
+  drive_.Apply(model_.get(), data_.get(), Now());
+  // mj_step in two halves, the first of the next step already taken: what depends on position and velocity stays
+  // current.
+  mj_step2(model_.get(), data_.get());
+  mj_step1(model_.get(), data_.get());
+  for (int i = 0; i < mjNWARNING; ++i)
+    if (data_->warning[i].number > 0)
+      throw std::runtime_error(
+          fmt::format("MuJoCo stopped at {:.3f} s: {}", data_->time, mju_warningText(i, data_->warning[i].lastinfo)));
+}
+
+Time World::Now() const { return std::llround(data_->time / Seconds(kStep)) * kStep; }
+
+Pose World::T_world_base() const {
+  const mjtNum* q = data_->qpos + model_->jnt_qposadr[model_->body_jntadr[base_body_]];
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(q[0], q[1], q[2]);
+  pose.linear() = Eigen::Quaterniond(q[3], q[4], q[5], q[6]).normalized().toRotationMatrix();
+  return pose;
+}
+
+double World::Speed_m_s() const {
+  // A free joint's linear velocity is that of the body's origin in the world's axes, its angular velocity in the
+  // body's.
+  const mjtNum* v = data_->qvel + model_->jnt_dofadr[model_->body_jntadr[base_body_]];
+  const Eigen::Vector3d forward_world = T_world_base().linear().col(0);
+  return forward_world.dot(Eigen::Vector3d(v[0], v[1], v[2])) + v[4] * wheel_radius_m_;
+}
+
+std::vector<Touch> World::CarTouches() const {
+  std::vector<Touch> touches;
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& contact = data_->contact[i];
+    int car = contact.geom[0], other = contact.geom[1];
+    if (car < 0 || other < 0 || contact.dist > 0.0) continue;  // flexes have no geom
+    if (!is_car_[car]) std::swap(car, other);
+    if (!is_car_[car] || is_car_[other] || (is_wheel_[car] && is_floor_[other])) continue;
+    touches.push_back({GeomName(model_.get(), car), GeomName(model_.get(), other)});
+  }
+  return touches;
+}
+
+bool World::IsCarGeom(int geom_id) const { return is_car_.at(static_cast<std::size_t>(geom_id)); }
+
+int World::ObstacleBody(const std::string& name) const {
+  const auto body = obstacle_bodies_.find(name);
+  if (body == obstacle_bodies_.end()) throw InputError("obstacle '" + name + "'", "no such obstacle in this world");
+  return body->second;
+}
+
+void World::MoveObstacle(const std::string& name, const Pose& T_world_obstacle) {
+  const int mocap = model_->body_mocapid[ObstacleBody(name)];
+  const Eigen::Quaterniond q(T_world_obstacle.linear());
+  Eigen::Vector3d::Map(data_->mocap_pos + 3 * mocap) = T_world_obstacle.translation();
+  Eigen::Vector4d::Map(data_->mocap_quat + 4 * mocap) = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
+  mj_step1(model_.get(), data_.get());
+}
+
+void World::PlaceObstacle(const std::string& name, const Pose& T_world_obstacle) {
+  MoveObstacle(name, T_world_obstacle);
+}
+
+void World::RemoveObstacle(const std::string& name) {
+  MoveObstacle(name, Pose(Eigen::Translation3d(0.0, 0.0, kParkingHeight_m)));
+}
+
+double World::ObstacleDistance_m(const std::string& name, double max_m) const {
+  const int obstacle = model_->body_geomadr[ObstacleBody(name)];
+  double nearest_m = max_m;
+  for (int geom = 0; geom < model_->ngeom; ++geom)
+    if (is_car_[geom] && model_->geom_contype[geom] != 0)
+      nearest_m = std::min(nearest_m, mj_geomDistance(model_.get(), data_.get(), geom, obstacle, max_m, nullptr));
+  return nearest_m;
+}
+
+std::vector<double> World::State() const {
+  constexpr int kParts = mjSTATE_TIME | mjSTATE_QPOS | mjSTATE_QVEL | mjSTATE_ACT;
+  std::vector<double> state(static_cast<std::size_t>(mj_stateSize(model_.get(), kParts)));
+  mj_getState(model_.get(), data_.get(), state.data(), kParts);
+  return state;
+}
+
+}  // namespace merlin::sim

@@ -4,6 +4,7 @@
 #include <mujoco/mujoco.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,14 +21,14 @@ namespace merlin::sim {
 struct Obstacle {
   std::string name;
   Eigen::Vector3d size_m{0.4, 0.4, 0.5};  // full edges
-  std::string material;                   // a name in materials.yaml
+  std::string material{};                 // a name in materials.yaml
 };
 
 struct WorldOptions {
   std::filesystem::path room;
   CarDescription car;
-  Pose T_world_start = Pose::Identity();  // of base_link, on the floor
-  std::vector<Obstacle> obstacles;
+  Pose T_world_start = Pose::Identity();  // of base_link; its height is taken from the floor there (within 0.5 m of z)
+  std::vector<Obstacle> obstacles{};
 };
 
 // Two geoms that touch, the first of them the car's. A wheel on a geom named "floor*" is no contact.
@@ -38,8 +39,10 @@ struct Touch {
 
 class World {
  public:
-  // Throws InputError: a room that is missing or not MJCF (with its line where MuJoCo knows it), a missing mesh, a car
-  // that starts in contact with anything but the floor.
+  // Throws InputError: a room that is missing or not MJCF (with its line where MuJoCo knows it), a missing mesh, a room
+  // without a geom named "floor*", a car that starts off the floor, in contact with anything else or inside it.
+  // Physics options (step, integrator, solver) are ours, whatever the room says. Errors of MuJoCo itself throw
+  // std::runtime_error from then on, in the whole process; it prints and logs nothing.
   explicit World(const WorldOptions& options);
   ~World();
   World(const World&) = delete;
@@ -48,6 +51,8 @@ class World {
   static constexpr Duration kStep{2'000'000};
 
   // One physics step. Throws std::runtime_error when MuJoCo warns (bad state): the simulation stops loudly.
+  // After it, positions, velocities and contacts in data() belong to the new state; accelerations, actuator and contact
+  // forces to the step that led there.
   void Step();
   Time Now() const;
   Pose T_world_base() const;
@@ -58,7 +63,8 @@ class World {
   // Puts the obstacle's bottom centre at the pose, or takes it away again.
   void PlaceObstacle(const std::string& name, const Pose& T_world_obstacle);
   void RemoveObstacle(const std::string& name);
-  // Smallest distance between the car and the obstacle; max_m where it is farther.
+  // Smallest distance between the car and the obstacle; max_m where it is farther, negative where they overlap.
+  // An unknown name is an InputError, here and above.
   double ObstacleDistance_m(const std::string& name, double max_m = 10.0) const;
 
   drivetrain::Controller& drive() { return drive_; }
@@ -68,16 +74,28 @@ class World {
   const std::vector<Eigen::Vector2d>& plan_xy_m() const { return plan_xy_m_; }
   double north_yaw_rad() const { return north_yaw_rad_; }
 
-  const mjModel* model() const { return model_; }
-  const mjData* data() const { return data_; }
+  const mjModel* model() const { return model_.get(); }
+  const mjData* data() const { return data_.get(); }
 
   // time, qpos, qvel, act: what the state hash is made of.
   std::vector<double> State() const;
 
  private:
-  mjModel* model_ = nullptr;
-  mjData* data_ = nullptr;
+  void AddObstacles(mjSpec* spec, const std::vector<Obstacle>& obstacles) const;
+  void ReadNumerics(const std::string& room);
+  void NameParts(const CarDescription& car, const std::vector<Obstacle>& obstacles);
+  void PutOnFloor(const WorldOptions& options);
+  void RefuseStartInContact(const WorldOptions& options) const;
+  void MoveObstacle(const std::string& name, const Pose& T_world_obstacle);
+  int ObstacleBody(const std::string& name) const;
+
+  std::unique_ptr<mjModel, void (*)(mjModel*)> model_{nullptr, mj_deleteModel};
+  std::unique_ptr<mjData, void (*)(mjData*)> data_{nullptr, mj_deleteData};
   drivetrain::Controller drive_;
+  int base_body_ = -1;
+  double wheel_radius_m_ = 0.0;
+  std::vector<bool> is_car_, is_wheel_, is_floor_;  // by geom
+  std::map<std::string, int> obstacle_bodies_;
   std::vector<Eigen::Vector2d> plan_xy_m_;
   double north_yaw_rad_ = 0.0;
 };

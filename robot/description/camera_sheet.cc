@@ -33,6 +33,12 @@ class SheetReader {
     if (!node.IsDefined()) return Fault(root_, fmt::format("missing key '{}'", key));
     return Check(node, key, range);
   }
+  int Whole(const char* key, Range range) {
+    const double number = Number(key, range);
+    if (number != std::floor(number))
+      Fault(root_[key], fmt::format("'{}': expected a whole number, got {}", key, number));
+    return static_cast<int>(number);
+  }
   double NumberOr(const char* key, Range range, double value) {
     known_.insert(key);
     return root_[key].IsDefined() ? Number(key, range) : value;
@@ -54,6 +60,10 @@ class SheetReader {
     if (node.IsDefined() && node.IsScalar()) return node.Scalar();
     Fault(root_, fmt::format("missing key '{}'", key));
     return "";
+  }
+
+  void Require(bool holds, const std::string& rule) {
+    if (!holds) Fault(root_, rule);
   }
 
   // Call last. Throws for unknown keys and for all faults met before.
@@ -79,7 +89,8 @@ class SheetReader {
   }
   double Fault(const YAML::Node& node, const std::string& what) {
     const YAML::Mark mark = node.Mark();
-    faults_ += (faults_.empty() ? "" : "\n") + (mark.is_null() ? file_ : fmt::format("{}:{}", file_, mark.line + 1)) + ": " + what;
+    faults_ += (faults_.empty() ? "" : "\n") + (mark.is_null() ? file_ : fmt::format("{}:{}", file_, mark.line + 1)) +
+               ": " + what;
     return 1.0;  // so that what is computed from it stays finite until Finish throws
   }
 
@@ -97,8 +108,8 @@ DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml) {
   DepthCameraSheet sheet;
   sheet.name = in.Text("name");
   CameraModel& camera = sheet.camera;
-  camera.width = static_cast<int>(in.Number("width_px", {1, 4096}));
-  camera.height = static_cast<int>(in.Number("height_px", {1, 4096}));
+  camera.width = in.Whole("width_px", {1, 4096});
+  camera.height = in.Whole("height_px", {1, 4096});
   camera.fx_px = 0.5 * camera.width / TanHalf(in.Number("fov_horizontal_deg", {0.1, 170}));
   camera.fy_px = 0.5 * camera.height / TanHalf(in.Number("fov_vertical_deg", {0.1, 170}));
   camera.cx_px = 0.5 * (camera.width - 1);
@@ -115,6 +126,7 @@ DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml) {
   sheet.integration_min_s = 1e-6 * in.Number("integration_min_us", {0.1, 1e7});
   sheet.integration_max_s = 1e-6 * in.Number("integration_max_us", {0.1, 1e7});
   for (const double mhz : in.Numbers("frequencies_mhz", {0.1, 1000})) sheet.frequencies_hz.push_back(mhz * 1e6);
+  in.Require(sheet.integration_min_s <= sheet.integration_max_s, "integration_min_us is above integration_max_us");
   in.Finish();
   return sheet;
 }
@@ -124,8 +136,8 @@ ColorCameraSheet ReadColorCameraSheet(const std::filesystem::path& yaml) {
   ColorCameraSheet sheet;
   sheet.name = in.Text("name");
   CameraModel& camera = sheet.camera;
-  camera.width = static_cast<int>(in.Number("width_px", {1, 8192}));
-  camera.height = static_cast<int>(in.Number("height_px", {1, 8192}));
+  camera.width = in.Whole("width_px", {1, 8192});
+  camera.height = in.Whole("height_px", {1, 8192});
   camera.fx_px = in.Number("fx_px", {1, 1e6});
   camera.fy_px = in.Number("fy_px", {1, 1e6});
   camera.cx_px = in.Number("cx_px", {-1e5, 1e5});

@@ -10,8 +10,8 @@
 namespace merlin {
 
 // Throws InputError: file, line where the parser knows it, and what is missing or wrong (no base_link, missing mesh, a
-// wheel or frame that the car needs, a non-positive mass or dimension). Meshes resolve "package://<name>/x" and relative
-// paths against the URDF's own folder.
+// wheel or frame that the car needs, a non-positive mass or dimension). Meshes resolve "package://<name>/x" and
+// relative paths against the URDF's own folder.
 CarDescription ReadCar(const std::filesystem::path& urdf);
 
 // Throw InputError: unknown key (names the nearest), missing key, value out of range; all faults at once.
