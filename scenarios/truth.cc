@@ -10,7 +10,7 @@ namespace {
 constexpr Duration kEpisodeGap = std::chrono::milliseconds(500);  // contacts closer than this are one collision
 constexpr double kStands_m_s = 0.01;
 
-std::string NameOf(std::size_t event) { return "obstacle_" + std::to_string(event); }
+std::string NameOf(std::size_t event) { return std::to_string(event); }
 
 }  // namespace
 
