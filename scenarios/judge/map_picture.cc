@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -13,22 +11,15 @@
 
 #include "robot/types/error.h"
 #include "scenarios/judge/point_grid.h"
+#include "scenarios/judge/sheet.h"
 
 namespace merlin {
 namespace {
 
-// All lengths in pixels of the finished picture; it is drawn kOversample times as large and averaged down.
-constexpr int kOversample = 2;
-constexpr double kWidth_px = 1400, kMargin_px = 48, kHeader_px = 112, kFooter_px = 92;
-constexpr double kPlotHeightMin_px = 420, kPlotHeightMax_px = 1300;
-constexpr double kPad_m = 0.8;         // free space around what is shown
-constexpr double kSmallestView_m = 4;  // a car that stands is shown with its surroundings
 constexpr double kCeiling_m = 2.5;
-constexpr int kShift = 4;  // fractional bits of OpenCV's drawing coordinates
 
 // Blue, green, red.
-const cv::Scalar kPaper(255, 255, 255), kPlot(247, 248, 248), kGrid(230, 232, 232), kInk(45, 40, 38),
-    kPale(120, 115, 110);
+const cv::Scalar kPaper(255, 255, 255), kGrid(230, 232, 232), kInk(45, 40, 38), kPale(120, 115, 110);
 const cv::Scalar kPlanColor(0, 0, 0), kTruthColor(60, 160, 250), kEstimateColor(35, 20, 190);
 
 // Low: light green, high: blue (a part of viridis, light enough for the plan's line to show on it).
@@ -54,16 +45,6 @@ std::vector<Eigen::Vector2d> Positions(const Trajectory& trajectory, const Pose&
   return positions;
 }
 
-struct Box {
-  Eigen::Vector2d min{HUGE_VAL, HUGE_VAL};
-  Eigen::Vector2d max{-HUGE_VAL, -HUGE_VAL};
-
-  void Add(const Eigen::Vector2d& p) {
-    min = min.cwiseMin(p);
-    max = max.cwiseMax(p);
-  }
-};
-
 // The cloud without its outermost hundredth on each side: a single stray point must not shrink the picture.
 void AddBulk(Box& box, const std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) return;
@@ -87,92 +68,6 @@ double RoundLength_m(double length_m) {
   const double digit = length_m / power;
   return power * (digit >= 5.0 ? 5.0 : digit >= 2.0 ? 2.0 : 1.0);
 }
-
-// The sheet of paper: draws in pixels of the finished picture, or in metres of the world.
-class Sheet {
- public:
-  explicit Sheet(const Box& box) {
-    const Eigen::Vector2d middle = 0.5 * (box.min + box.max);
-    const Eigen::Vector2d size =
-        (box.max - box.min + Eigen::Vector2d::Constant(2.0 * kPad_m)).cwiseMax(kSmallestView_m);
-    const double plot_width_px = kWidth_px - 2.0 * kMargin_px;
-    plot_height_px_ = std::round(std::clamp(plot_width_px * size.y() / size.x(), kPlotHeightMin_px, kPlotHeightMax_px));
-    px_per_m_ = std::min(plot_width_px / size.x(), plot_height_px_ / size.y());
-    const Eigen::Vector2d half_m = 0.5 / px_per_m_ * Eigen::Vector2d(plot_width_px, plot_height_px_);
-    view_ = {middle - half_m, middle + half_m};
-    image_ = cv::Mat(static_cast<int>(Height_px()) * kOversample, static_cast<int>(kWidth_px) * kOversample, CV_8UC3,
-                     kPaper);
-    Fill({kMargin_px, kHeader_px}, {kWidth_px - kMargin_px, kHeader_px + plot_height_px_}, kPlot);
-  }
-
-  double Height_px() const { return kHeader_px + plot_height_px_ + kFooter_px; }
-  double Metres_px(double length_m) const { return length_m * px_per_m_; }
-  const Box& view() const { return view_; }
-  bool Shows(const Eigen::Vector2d& p) const {
-    return (p.array() >= view_.min.array()).all() && (p.array() <= view_.max.array()).all();
-  }
-
-  Eigen::Vector2d Pixel(const Eigen::Vector2d& p) const {
-    return {kMargin_px + (p.x() - view_.min.x()) * px_per_m_, kHeader_px + (view_.max.y() - p.y()) * px_per_m_};
-  }
-  void Fill(const Eigen::Vector2d& a_px, const Eigen::Vector2d& b_px, const cv::Scalar& color) {
-    cv::rectangle(image_, Fixed(a_px), Fixed(b_px), color, cv::FILLED, cv::LINE_AA, kShift);
-  }
-  void Line(const std::vector<Eigen::Vector2d>& points_px, double width_px, const cv::Scalar& color,
-            bool closed = false) {
-    std::vector<cv::Point> fixed;
-    for (const Eigen::Vector2d& p : points_px) fixed.push_back(Fixed(p));
-    const int width = std::max(1, static_cast<int>(std::lround(width_px * kOversample)));
-    cv::polylines(image_, fixed, closed, color, width, cv::LINE_AA, kShift);
-  }
-  void LineInWorld(const std::vector<Eigen::Vector2d>& points_m, double width_px, const cv::Scalar& color,
-                   bool closed = false) {
-    std::vector<Eigen::Vector2d> points_px;
-    for (const Eigen::Vector2d& p : points_m) points_px.push_back(Pixel(p));
-    Line(points_px, width_px, color, closed);
-  }
-  void Dot(const Eigen::Vector2d& p_px, double radius_px, const cv::Scalar& color) {
-    cv::circle(image_, Fixed(p_px), static_cast<int>(std::lround(radius_px * kOversample * (1 << kShift))), color,
-               cv::FILLED, cv::LINE_AA, kShift);
-  }
-  // A square of 3 x 3 pixels before averaging: of a cloud's many points, so without OpenCV's smooth circles.
-  void Speck(const Eigen::Vector2d& p_px, const cv::Scalar& color) {
-    const Eigen::Vector2d middle = p_px * kOversample;
-    const cv::Rect square(static_cast<int>(std::lround(middle.x())) - 1, static_cast<int>(std::lround(middle.y())) - 1,
-                          3, 3);
-    image_(square & cv::Rect({}, image_.size())).setTo(color);
-  }
-  // The text's left end on its base line.
-  void Text(const Eigen::Vector2d& p_px, const std::string& text, double size_px, const cv::Scalar& color,
-            bool bold = false) {
-    cv::putText(image_, text,
-                cv::Point(static_cast<int>(p_px.x() * kOversample), static_cast<int>(p_px.y() * kOversample)), kFont,
-                Scale(size_px), color, (bold ? 2 : 1) * kOversample, cv::LINE_AA);
-  }
-  double TextWidth_px(const std::string& text, double size_px) const {
-    int base_line = 0;
-    return cv::getTextSize(text, kFont, Scale(size_px), kOversample, &base_line).width /
-           static_cast<double>(kOversample);
-  }
-  cv::Mat Finished() const {
-    cv::Mat picture;
-    cv::resize(image_, picture, cv::Size(), 1.0 / kOversample, 1.0 / kOversample, cv::INTER_AREA);
-    return picture;
-  }
-
- private:
-  static constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-  static double Scale(double size_px) { return size_px * kOversample / 21.0; }  // Hershey capitals are 21 units high
-  static cv::Point Fixed(const Eigen::Vector2d& p_px) {
-    const Eigen::Vector2d fixed = (p_px * kOversample * (1 << kShift)).cwiseMax(-1e8).cwiseMin(1e8);
-    return {static_cast<int>(std::lround(fixed.x())), static_cast<int>(std::lround(fixed.y()))};
-  }
-
-  double plot_height_px_ = 0.0;
-  double px_per_m_ = 1.0;
-  Box view_;
-  cv::Mat image_;
-};
 
 void DrawGrid(Sheet& sheet, double step_m) {
   const Box& view = sheet.view();
@@ -216,7 +111,7 @@ std::string Subtitle(const MapPicture& picture) {
 }
 
 void DrawScaleBar(Sheet& sheet, double length_m) {
-  const Eigen::Vector2d left(kMargin_px, sheet.Height_px() - 38),
+  const Eigen::Vector2d left(Sheet::kMargin_px, sheet.Height_px() - 38),
       right = left + Eigen::Vector2d(sheet.Metres_px(length_m), 0);
   const Eigen::Vector2d tick(0, 7);
   sheet.Line({left - tick, left + tick}, 2.5, kInk);
@@ -229,7 +124,7 @@ void DrawScaleBar(Sheet& sheet, double length_m) {
 // From the right: the two paths, the plan, the heights' colours.
 void DrawLegend(Sheet& sheet, bool has_outline, const cv::Mat& ramp) {
   const double y_px = sheet.Height_px() - 38;
-  double x_px = kWidth_px - kMargin_px;
+  double x_px = Sheet::kWidth_px - Sheet::kMargin_px;
   const auto entry = [&](const std::string& label, double width_px, const cv::Scalar& color) {
     x_px -= sheet.TextWidth_px(label, 13);
     sheet.Text({x_px, y_px + 5}, label, 13, kInk);
@@ -280,8 +175,8 @@ std::string ToPng(const MapPicture& picture) {
   sheet.LineInWorld(Positions(picture.truth, Pose::Identity()), 6, kTruthColor);
   sheet.LineInWorld(Positions(picture.estimate, picture.T_world_map), 2, kEstimateColor);
   DrawStart(sheet, picture.truth);
-  sheet.Text({kMargin_px, 54}, picture.title, 24, kInk, true);
-  sheet.Text({kMargin_px, 90}, Subtitle(picture), 15, kPale);
+  sheet.Text({Sheet::kMargin_px, 54}, picture.title, 24, kInk, true);
+  sheet.Text({Sheet::kMargin_px, 90}, Subtitle(picture), 15, kPale);
   DrawScaleBar(sheet, step_m);
   DrawLegend(sheet, !picture.outline.empty(), ramp);
   return Encode(sheet.Finished());

@@ -1,0 +1,58 @@
+// The figures of a run.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace merlin {
+
+// Milliseconds from a depth frame's arrival to the drive command.
+struct StackTimes {
+  std::optional<double> p50, p99, max;
+};
+
+// Figures of a run, in result.json's order. Empty: not known, null in JSON; a number that is not finite counts as
+// empty.
+struct Metrics {
+  std::optional<double> sim_time_s, wall_time_s, setup_s, real_time_factor, distance_m;
+  std::optional<std::int64_t> laps, collisions;
+  std::optional<double> ate_rmse_m, ate_online_rmse_m, rpe_translation_percent, rpe_rotation_deg_per_m;
+  std::array<std::optional<double>, 2> map_size_m, map_size_error_percent;
+  std::optional<double> map_to_plan_p95_m, coverage_percent;
+  std::optional<std::int64_t> depth_frames, color_frames, frames_dropped;
+  StackTimes stack_ms;
+  std::optional<double> peak_rss_mb, stack_rss_mb;
+  // Of scenarios with an obstacle only; left out of result.json where empty.
+  std::optional<double> obstacle_gap_m, obstacle_stop_s;
+};
+
+// The one list of names: visit(name, figure) for each, in result.json's order.
+template <class Visitor>
+void VisitMetrics(const Metrics& m, Visitor visit) {
+  visit("sim_time_s", m.sim_time_s);
+  visit("wall_time_s", m.wall_time_s);
+  visit("setup_s", m.setup_s);
+  visit("real_time_factor", m.real_time_factor);
+  visit("distance_m", m.distance_m);
+  visit("laps", m.laps);
+  visit("collisions", m.collisions);
+  visit("ate_rmse_m", m.ate_rmse_m);
+  visit("ate_online_rmse_m", m.ate_online_rmse_m);
+  visit("rpe_translation_percent", m.rpe_translation_percent);
+  visit("rpe_rotation_deg_per_m", m.rpe_rotation_deg_per_m);
+  visit("map_size_m", m.map_size_m);
+  visit("map_size_error_percent", m.map_size_error_percent);
+  visit("map_to_plan_p95_m", m.map_to_plan_p95_m);
+  visit("coverage_percent", m.coverage_percent);
+  visit("depth_frames", m.depth_frames);
+  visit("color_frames", m.color_frames);
+  visit("frames_dropped", m.frames_dropped);
+  visit("stack_ms", m.stack_ms);
+  visit("peak_rss_mb", m.peak_rss_mb);
+  visit("stack_rss_mb", m.stack_rss_mb);
+  visit("obstacle_gap_m", m.obstacle_gap_m);
+  visit("obstacle_stop_s", m.obstacle_stop_s);
+}
+
+}  // namespace merlin

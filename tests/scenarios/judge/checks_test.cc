@@ -1,0 +1,88 @@
+#include "scenarios/judge/checks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "robot/types/error.h"
+
+namespace merlin {
+namespace {
+
+Check EvaluateOne(const std::string& name, double limit, const Metrics& metrics) {
+  return Evaluate({{name, limit}}, metrics, "test").at(0);
+}
+
+TEST(Evaluate, PassesAtTheLimitAndFailsBeyond) {
+  Metrics metrics;
+  metrics.ate_rmse_m = 0.5;
+  metrics.laps = 1;
+  EXPECT_TRUE(EvaluateOne("ate_rmse_m_max", 0.5, metrics).pass);
+  EXPECT_FALSE(EvaluateOne("ate_rmse_m_max", 0.49, metrics).pass);
+  EXPECT_TRUE(EvaluateOne("laps_min", 1, metrics).pass);
+  EXPECT_FALSE(EvaluateOne("laps_min", 2, metrics).pass);
+  const Check check = EvaluateOne("laps_max", 0, metrics);
+  EXPECT_EQ(check.name, "laps_max");
+  EXPECT_EQ(check.value, 1.0);
+  EXPECT_EQ(check.limit, 0.0);
+  EXPECT_FALSE(check.pass);
+}
+
+TEST(Evaluate, FailsWhatIsNotKnownOrNotFinite) {
+  Metrics metrics;
+  for (const double value : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    metrics.ate_rmse_m = value;
+    EXPECT_FALSE(EvaluateOne("ate_rmse_m_max", 1e9, metrics).pass);
+    EXPECT_FALSE(EvaluateOne("ate_rmse_m_min", -1e9, metrics).pass);
+    EXPECT_FALSE(EvaluateOne("ate_rmse_m_max", 1e9, metrics).value);
+  }
+  EXPECT_FALSE(EvaluateOne("collisions_max", 0, {}).pass);
+  EXPECT_FALSE(EvaluateOne("coverage_percent_min", 0, {}).pass);
+}
+
+TEST(Evaluate, WantsBothValuesOfAMetricOfTwo) {
+  Metrics metrics;
+  metrics.map_size_error_percent = {0.5, 1.5};
+  EXPECT_TRUE(EvaluateOne("map_size_error_percent_max", 2, metrics).pass);
+  EXPECT_EQ(EvaluateOne("map_size_error_percent_max", 1, metrics).value, 1.5);
+  EXPECT_FALSE(EvaluateOne("map_size_error_percent_max", 1, metrics).pass);
+  EXPECT_EQ(EvaluateOne("map_size_error_percent_min", 0, metrics).value, 0.5);
+  metrics.map_size_error_percent = {0.5, std::nullopt};
+  EXPECT_FALSE(EvaluateOne("map_size_error_percent_max", 2, metrics).pass);
+}
+
+TEST(Evaluate, ReachesNestedAndObstacleFigures) {
+  Metrics metrics;
+  metrics.stack_ms.p99 = 7.0;
+  metrics.obstacle_gap_m = 0.4;
+  EXPECT_TRUE(EvaluateOne("stack_ms.p99_max", 10, metrics).pass);
+  EXPECT_TRUE(EvaluateOne("obstacle_gap_m_min", 0.3, metrics).pass);
+}
+
+TEST(Evaluate, RefusesAnUnknownNameAndNamesTheNearest) {
+  const auto message = [](const CheckLimit& limit) -> std::string {
+    try {
+      RequireKnown(limit, "scenarios/x.yaml:9");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message({"ate_rms_m_max", 1}).find("nearest is 'ate_rmse_m_max'"), std::string::npos);
+  EXPECT_NE(message({"ate_rms_m_max", 1}).find("scenarios/x.yaml:9"), std::string::npos);
+  EXPECT_NE(message({"collisions", 0}).find("nearest is 'collisions_max'"), std::string::npos);
+  EXPECT_NE(message({"", 0}).find("unknown check ''"), std::string::npos);
+  EXPECT_NE(message({"stack_ms_max", 0}).find("unknown check"), std::string::npos);
+  EXPECT_NE(message({"laps_min", std::nan("")}).find("a finite number"), std::string::npos);
+  EXPECT_EQ(message({"laps_min", 1}), "");
+  EXPECT_THROW(Evaluate({{"lap_min", 1}}, {}, "x"), InputError);
+}
+
+TEST(Judge, FailsWithAnyCheck) {
+  EXPECT_EQ(Judge({}), Verdict::kPass);
+  EXPECT_EQ(Judge({{.pass = true}, {.pass = true}}), Verdict::kPass);
+  EXPECT_EQ(Judge({{.pass = true}, {.pass = false}}), Verdict::kFail);
+}
+
+}  // namespace
+}  // namespace merlin
