@@ -17,15 +17,17 @@ namespace merlin {
 namespace {
 
 constexpr double kCeiling_m = 2.5;
+constexpr double kFloor_m = 0.1;  // what is lower is drawn pale: it is the walls that make a map
 
 // Blue, green, red.
-const cv::Scalar kPaper(255, 255, 255), kGrid(230, 232, 232), kInk(45, 40, 38), kPale(120, 115, 110);
+const cv::Scalar kPaper(255, 255, 255), kGrid(230, 232, 232), kInk(45, 40, 38), kPale(120, 115, 110), kFloorColor(214, 220, 208);
 const cv::Scalar kPlanColor(0, 0, 0), kTruthColor(60, 160, 250), kEstimateColor(35, 20, 190);
 
-// Low: light green, high: blue (a part of viridis, light enough for the plan's line to show on it).
+// Floor pale, then low: green, high: dark blue (a part of viridis).
 cv::Scalar HeightColor(const cv::Mat& ramp, double height_m) {
+  if (height_m < kFloor_m) return kFloorColor;
   const double share = std::clamp(height_m / kCeiling_m, 0.0, 1.0);
-  const auto color = ramp.at<cv::Vec3b>(static_cast<int>(std::lround(195.0 - 120.0 * share)), 0);
+  const auto color = ramp.at<cv::Vec3b>(static_cast<int>(std::lround(170.0 - 140.0 * share)), 0);
   return cv::Scalar(color[0], color[1], color[2]);
 }
 
@@ -80,7 +82,7 @@ void DrawGrid(Sheet& sheet, double step_m) {
 void DrawCloud(Sheet& sheet, std::vector<Eigen::Vector3d> points, const cv::Mat& ramp) {
   std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
   for (const Eigen::Vector3d& p : points)
-    if (sheet.Shows(p.head<2>())) sheet.Speck(sheet.Pixel(p.head<2>()), HeightColor(ramp, p.z()));
+    if (sheet.Shows(p.head<2>())) sheet.Speck(sheet.Pixel(p.head<2>()), p.z() < kFloor_m ? 1.5 : 3.0, HeightColor(ramp, p.z()));
 }
 
 void DrawStart(Sheet& sheet, const Trajectory& truth) {

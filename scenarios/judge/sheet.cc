@@ -70,10 +70,11 @@ void Sheet::Dot(const Eigen::Vector2d& p_px, double radius_px, const cv::Scalar&
              cv::FILLED, cv::LINE_AA, kShift);
 }
 
-void Sheet::Speck(const Eigen::Vector2d& p_px, const cv::Scalar& color) {
-  const Eigen::Vector2d middle = p_px * kOversample;
-  const cv::Point corner(static_cast<int>(std::lround(middle.x())) - 1, static_cast<int>(std::lround(middle.y())) - 1);
-  image_(cv::Rect(corner, cv::Size(3, 3)) & cv::Rect({}, image_.size())).setTo(color);
+void Sheet::Speck(const Eigen::Vector2d& p_px, double edge_px, const cv::Scalar& color) {
+  const int edge = std::max(1, static_cast<int>(std::lround(edge_px * kOversample)));
+  const Eigen::Vector2d corner_px = p_px * kOversample - Eigen::Vector2d::Constant(edge / 2);
+  const cv::Point corner(static_cast<int>(std::lround(corner_px.x())), static_cast<int>(std::lround(corner_px.y())));
+  image_(cv::Rect(corner, cv::Size(edge, edge)) & cv::Rect({}, image_.size())).setTo(color);
 }
 
 void Sheet::Text(const Eigen::Vector2d& p_px, const std::string& text, double size_px, const cv::Scalar& color,

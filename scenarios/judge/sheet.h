@@ -42,8 +42,8 @@ class Sheet {
   void LineInWorld(const std::vector<Eigen::Vector2d>& points_m, double width_px, const cv::Scalar& color,
                    bool closed = false);
   void Dot(const Eigen::Vector2d& p_px, double radius_px, const cv::Scalar& color);
-  // A point of a cloud: a small square, quicker than a dot.
-  void Speck(const Eigen::Vector2d& p_px, const cv::Scalar& color);
+  // A point of a cloud: a square, quicker than a dot.
+  void Speck(const Eigen::Vector2d& p_px, double edge_px, const cv::Scalar& color);
   // Text (ASCII) from its left end on its base line; size_px: height of capitals.
   void Text(const Eigen::Vector2d& p_px, const std::string& text, double size_px, const cv::Scalar& color,
             bool bold = false);

@@ -16,12 +16,8 @@ namespace {
 std::string FirstComment(const std::filesystem::path& file) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
-    for (const std::string mark : {"# ", "<!-- "}) {
-      const std::size_t at = line.find(mark);
-      if (at == std::string::npos) continue;
-      std::string text = line.substr(at + mark.size());
-      return text.substr(0, text.find(" -->"));
-    }
+    const std::size_t word = line.find_first_not_of("#<!- ");
+    if (word != std::string::npos) return line.substr(word, line.find(" -->") - word);
   }
   return "";
 }
