@@ -14,6 +14,7 @@ Footprint FootprintOf(const CarDescription& car) {
     const Pose T = parent == T_base_link.end() ? Pose::Identity() : parent->second * link.T_parent_link;
     T_base_link[link.name] = T;
     for (const CarShape& shape : link.collision) {
+      if (shape.kind == CarShape::Kind::kMesh) continue;
       Eigen::Vector3d half = 0.5 * shape.size_m;
       if (shape.kind == CarShape::Kind::kSphere) half.setConstant(shape.size_m.x());
       if (shape.kind == CarShape::Kind::kCylinder) half = {shape.size_m.x(), shape.size_m.x(), 0.5 * shape.size_m.y()};
@@ -32,25 +33,31 @@ std::optional<double> Avoid::SeenNow_m(const Observation& observation, std::span
   };
   if (std::ranges::count_if(observation.saturated_base, ahead) >= config_.saturated_min) return 0.0;
 
-  std::vector<double> way_m(path_base.size(), 0.0);
-  for (std::size_t i = 1; i < path_base.size(); ++i) way_m[i] = way_m[i - 1] + (path_base[i] - path_base[i - 1]).norm();
-  const double half_width_m = footprint_.half_width_m + config_.margin_m;
   std::vector<double> in_the_way_m;
   for (const Point& point : observation.points_base) {
     if (point.position.z() < config_.height_min_m || point.position.z() > config_.height_max_m) continue;
-    const Eigen::Vector2d p = point.position.head<2>().cast<double>();
-    double best = half_width_m * half_width_m;
-    std::optional<double> at_m;
-    for (std::size_t i = 0; i < path_base.size(); ++i) {
-      const double squared = (path_base[i] - p).squaredNorm();
-      if (squared < best) best = squared, at_m = way_m[i];
-    }
-    if (at_m) in_the_way_m.push_back(*at_m);
+    if (const auto way_m = WayUntilTouch_m(point.position.head<2>().cast<double>(), path_base)) in_the_way_m.push_back(*way_m);
   }
   if (static_cast<int>(in_the_way_m.size()) < config_.points_min) return std::nullopt;
   const auto nth = in_the_way_m.begin() + (config_.points_min - 1);
   std::nth_element(in_the_way_m.begin(), nth, in_the_way_m.end());
-  return std::max(0.0, *nth - footprint_.front_m);
+  return *nth;
+}
+
+std::optional<double> Avoid::WayUntilTouch_m(const Eigen::Vector2d& point_base, std::span<const Eigen::Vector2d> path_base) const {
+  const double half_width_m = footprint_.half_width_m + config_.margin_m;
+  double way_m = 0.0;
+  for (std::size_t i = 0; i + 1 < path_base.size(); ++i) {
+    const Eigen::Vector2d step = path_base[i + 1] - path_base[i];
+    const double length_m = step.norm();
+    if (length_m == 0.0) continue;
+    const Eigen::Vector2d along = step / length_m, offset = point_base - path_base[i];
+    const double ahead_m = along.dot(offset), left_m = along.x() * offset.y() - along.y() * offset.x();
+    if (std::abs(left_m) <= half_width_m && ahead_m >= 0.0 && ahead_m <= footprint_.front_m + length_m)
+      return way_m + std::max(0.0, ahead_m - footprint_.front_m);
+    way_m += length_m;
+  }
+  return std::nullopt;
 }
 
 std::optional<double> Avoid::FreeWay_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base) {

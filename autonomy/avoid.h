@@ -37,7 +37,7 @@ void Visit(Visitor& v, AvoidConfig& c) {
   v("saturated_half_angle_rad", c.saturated_half_angle_rad, {0.0, 1.6});
 }
 
-// What of the car touches first, from base_link, over its collision shapes.
+// What of the car touches first, from base_link, over its collision shapes (boxes, cylinders, spheres; meshes are left out).
 struct Footprint {
   double front_m = 0.0;
   double half_width_m = 0.0;
@@ -48,8 +48,8 @@ class Avoid {
  public:
   Avoid(const Footprint& footprint, const AvoidConfig& config) : footprint_(footprint), config_(config) {}
 
-  // Way free before the car's front along the path it is about to drive (points in the base frame, in order, starting
-  // near the origin). Nothing: no obstacle seen on it. Zero: something is too close to measure.
+  // Way the car can drive along the path (points of its base_link to be, in the base frame, in order, from the origin
+  // on) until its footprint, turned along the path, touches something. Nothing: no obstacle seen on it. Zero: something is too close to measure.
   std::optional<double> FreeWay_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base);
 
   // The fastest speed from which the car, braking as planned, still stands stop_gap_m before the obstacle.
@@ -57,6 +57,7 @@ class Avoid {
 
  private:
   std::optional<double> SeenNow_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base) const;
+  std::optional<double> WayUntilTouch_m(const Eigen::Vector2d& point_base, std::span<const Eigen::Vector2d> path_base) const;
 
   Footprint footprint_;
   AvoidConfig config_;

@@ -76,14 +76,24 @@ bool Pilot::TurnIsOver(const Pose& T_map_base) const {
   return std::abs(WrapPi(Yaw(T_map_base) - hint_.yaw_rad)) < 0.15;
 }
 
-double Pilot::PursuitSteering_rad(const std::vector<Eigen::Vector2d>& path_base) const {
+Pilot::Pursuit Pilot::Pursue(const std::vector<Eigen::Vector2d>& path_base) const {
   // Pure pursuit (Coulter 1992): the arc through the first path point a look-ahead away.
-  const auto far = std::ranges::find_if(path_base, [this](const Eigen::Vector2d& p) {
+  auto far = std::ranges::find_if(path_base, [this](const Eigen::Vector2d& p) {
     return p.x() > 0.0 && p.norm() >= config_.look_ahead_m;
   });
-  const Eigen::Vector2d goal = far == path_base.end() ? path_base.back() : *far;
-  const double curvature_1_m = 2.0 * goal.y() / std::max(goal.squaredNorm(), 0.04);
-  return std::clamp(std::atan(car_.wheelbase_m * curvature_1_m), -car_.steering_max_rad, car_.steering_max_rad);
+  if (far == path_base.end()) far = std::prev(path_base.end());
+  const double curvature_1_m = 2.0 * far->y() / std::max(far->squaredNorm(), 0.04);
+  Pursuit pursuit;
+  pursuit.steering_rad =
+      std::clamp(std::atan(car_.wheelbase_m * curvature_1_m), -car_.steering_max_rad, car_.steering_max_rad);
+  const double bend_1_m = std::tan(pursuit.steering_rad) / car_.wheelbase_m;  // of the arc it can really drive
+  Pose T_base_ahead = Pose::Identity();
+  for (double s = 0.0; s < far->norm(); s += kPathStep_m) {
+    pursuit.way_base.push_back(T_base_ahead.translation().head<2>());
+    T_base_ahead = T_base_ahead * FromXyYaw(kPathStep_m, 0.0, kPathStep_m * bend_1_m);
+  }
+  pursuit.way_base.insert(pursuit.way_base.end(), far, path_base.end());
+  return pursuit;
 }
 
 Decision Pilot::Decide(const Observation& observation, const std::optional<Pose>& T_map_base, const Slam& slam) {
@@ -105,10 +115,11 @@ Decision Pilot::Decide(const Observation& observation, const std::optional<Pose>
   for (std::size_t i = NearestIndex(path_map_, T_map_base->translation().head<2>()); i < path_map_.size(); ++i)
     path_base.push_back((T_base_map * Eigen::Vector3d(path_map_[i].x(), path_map_[i].y(), 0.0)).head<2>());
 
-  const double limit_m_s = avoid_.SpeedLimit_m_s(avoid_.FreeWay_m(observation, path_base));
+  const Pursuit pursuit = Pursue(path_base);
+  const double limit_m_s = avoid_.SpeedLimit_m_s(avoid_.FreeWay_m(observation, pursuit.way_base));
   const double wish_m_s = turn_side_ ? config_.turn_speed_m_s : config_.speed_m_s;
   const double speed_m_s = std::min(wish_m_s, limit_m_s) < 0.03 ? 0.0 : std::min(wish_m_s, limit_m_s);
-  Decision decision{Command(speed_m_s, PursuitSteering_rad(path_base)), false, "follows the corridor"};
+  Decision decision{Command(speed_m_s, pursuit.steering_rad), false, "follows the corridor"};
   if (turn_side_) decision.doing = *turn_side_ > 0.0 ? "turns left" : "turns right";
   if (speed_m_s == 0.0) decision.doing = "waits for an obstacle";
   return decision;

@@ -73,7 +73,12 @@ class Pilot {
   void PlanTurn(const Corridor& corridor, const Pose& T_map_base, double side);
   bool TurnIsOver(const Pose& T_map_base) const;
   DriveCommand Command(double speed_m_s, double steering_rad) const;
-  double PursuitSteering_rad(const std::vector<Eigen::Vector2d>& path_base) const;
+  // The arc of pure pursuit from the car to the path, then the path: what the car will really sweep.
+  struct Pursuit {
+    double steering_rad = 0.0;
+    std::vector<Eigen::Vector2d> way_base;
+  };
+  Pursuit Pursue(const std::vector<Eigen::Vector2d>& path_base) const;
 
   CarDescription car_;
   Task task_;

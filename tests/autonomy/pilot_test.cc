@@ -73,6 +73,15 @@ TEST(Pilot, StandsWithoutAPoseAndBeforeAnObstacle) {
   EXPECT_EQ(decision.doing, "waits for an obstacle");
 }
 
+TEST(Pilot, LooksForObstaclesWhereItWillDriveNotWhereItWants) {
+  // Half a metre left of the middle, a box right before the bumper: beside the middle line, but on the way to it.
+  const Slam slam = InCorridor(FromXyYaw(0.0, 0.5, 0.0));
+  Pilot pilot(Car(), {}, {});
+  Observation observation = Quiet();
+  for (int i = 0; i < 20; ++i) observation.points_base.push_back({.position = {0.8f, 0.01f * i - 0.1f, 0.3f}, .sigma_m = 0.01f});
+  EXPECT_EQ(pilot.Decide(observation, Pose::Identity(), slam).command.speed_m_s, 0.0);
+}
+
 TEST(Pilot, IsDoneAfterItsLapsAndNotBefore) {
   const Slam slam = InCorridor(Pose::Identity());
   Pilot pilot(Car(), {.behavior = "follow_corridor", .laps = 1}, {});
