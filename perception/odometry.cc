@@ -61,9 +61,7 @@ void Heading::Update(Time stamp, double compass_yaw_rad, double odometry_yaw_rad
     offset_rad_ = offset_rad;
     variance_ = measured_variance;
   } else {
-    const double turned_rad = WrapPi(odometry_yaw_rad - odometry_yaw_rad_);
-    variance_ += std::pow(config_.drift_per_turn * turned_rad, 2) +
-                 std::pow(config_.drift_rad_per_sqrt_s, 2) * Seconds(stamp - stamp_);
+    variance_ = VarianceAt(stamp, odometry_yaw_rad);
     const double gain = variance_ / (variance_ + measured_variance);
     offset_rad_ = WrapPi(offset_rad_ + gain * WrapPi(offset_rad - offset_rad_));
     variance_ *= 1.0 - gain;
@@ -72,8 +70,14 @@ void Heading::Update(Time stamp, double compass_yaw_rad, double odometry_yaw_rad
   odometry_yaw_rad_ = odometry_yaw_rad;
 }
 
-double Heading::Sigma_rad() const {
-  return started_ ? std::sqrt(variance_) : std::numeric_limits<double>::infinity();
+double Heading::VarianceAt(Time now, double odometry_yaw_rad) const {
+  const double turned_rad = WrapPi(odometry_yaw_rad - odometry_yaw_rad_);
+  return variance_ + std::pow(config_.drift_per_turn * turned_rad, 2) +
+         std::pow(config_.drift_rad_per_sqrt_s, 2) * std::max(0.0, Seconds(now - stamp_));
+}
+
+double Heading::Sigma_rad(Time now, double odometry_yaw_rad) const {
+  return started_ ? std::sqrt(VarianceAt(now, odometry_yaw_rad)) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace merlin

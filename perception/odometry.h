@@ -54,9 +54,12 @@ class Heading {
   // A compass yaw and the odometry's yaw at the same instant.
   void Update(Time stamp, double compass_yaw_rad, double odometry_yaw_rad);
   double Yaw_rad(double odometry_yaw_rad) const { return WrapPi(odometry_yaw_rad + offset_rad_); }
-  double Sigma_rad() const;  // infinite before the first reading
+  // One sigma at an instant from the last reading on: grows with time and turns. Infinite before the first reading.
+  double Sigma_rad(Time now, double odometry_yaw_rad) const;
 
  private:
+  double VarianceAt(Time now, double odometry_yaw_rad) const;
+
   HeadingConfig config_;
   bool started_ = false;
   Time stamp_{0};

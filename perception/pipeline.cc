@@ -12,6 +12,10 @@ Pipeline::Pipeline(Rig rig, const PerceptionConfig& config)
       odometry_(rig_.car),
       heading_(config.heading) {}
 
+void Pipeline::Add(const DriveState& state) {
+  if (std::isfinite(state.steering_rad)) odometry_.Update(state);
+}
+
 void Pipeline::Add(const CompassReading& reading) {
   if (!std::isfinite(reading.yaw_rad)) return;
   if (const auto T_odom_base = odometry_.At(reading.stamp)) heading_.Update(reading.stamp, reading.yaw_rad, Yaw(*T_odom_base));
@@ -27,7 +31,7 @@ std::optional<Observation> Pipeline::Process(DepthFrame frame) {
   observation.stamp = frame.stamp;
   observation.T_odom_base = *T_odom_base;
   observation.yaw_rad = heading_.Yaw_rad(Yaw(*T_odom_base));
-  observation.yaw_sigma_rad = heading_.Sigma_rad();
+  observation.yaw_sigma_rad = heading_.Sigma_rad(frame.stamp, Yaw(*T_odom_base));
 
   const FilteredDepth filtered = FilterDepth(std::move(frame), rig_.depth, config_.filter);
   ProjectDepth(filtered, rig_.depth, rays_, rig_.T_base_depth, observation);

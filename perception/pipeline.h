@@ -1,7 +1,6 @@
 // Perception as one sentence: filter, odometry, project, fuse.
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -41,7 +40,8 @@ struct Rig {
 class Pipeline {
  public:
   Pipeline(Rig rig, const PerceptionConfig& config);
-  void Add(const DriveState& state) { odometry_.Update(state); }
+  // States and readings that are not finite are left out.
+  void Add(const DriveState& state);
   void Add(const CompassReading& reading);
   void Add(ColorFrame frame);
   // Nothing until wheel odometry has begun.

@@ -11,7 +11,7 @@ PosePrior Slam::Predict(const Observation& observation) const {
   const Pose motion = T_odom_last_.inverse() * observation.T_odom_base;
   Pose T_map_base = trajectory_.back().T_map_base * motion;
   const bool has_heading = std::isfinite(observation.yaw_sigma_rad);
-  const double yaw_rad = has_heading ? observation.yaw_rad : Yaw(T_map_base);
+  const double yaw_rad = has_heading ? WrapPi(observation.yaw_rad + *map_turn_rad_) : Yaw(T_map_base);
 
   PosePrior prior;
   prior.T_map_base = FromXyYaw(T_map_base.translation().x(), T_map_base.translation().y(), yaw_rad);
@@ -25,12 +25,20 @@ PosePrior Slam::Predict(const Observation& observation) const {
 }
 
 std::optional<Pose> Slam::Update(const Observation& observation) {
+  if (!observation.T_odom_base.matrix().allFinite()) return std::nullopt;
+  const bool has_heading = std::isfinite(observation.yaw_sigma_rad);
   if (!first_stamp_) first_stamp_ = observation.stamp;
   if (trajectory_.empty()) {
     const bool settled = observation.yaw_sigma_rad <= config_.start_sigma_rad;
     if (!settled && Seconds(observation.stamp - *first_stamp_) < config_.start_wait_s) return std::nullopt;
     T_odom_last_ = observation.T_odom_base;
-    trajectory_.push_back({observation.stamp, FromXyYaw(0.0, 0.0, std::isfinite(observation.yaw_sigma_rad) ? observation.yaw_rad : 0.0)});
+    trajectory_.push_back({observation.stamp, FromXyYaw(0.0, 0.0, has_heading ? observation.yaw_rad : 0.0)});
+  }
+
+  // Mapping that began without a heading keeps its own direction when one comes.
+  if (has_heading && !map_turn_rad_) {
+    const Pose T_map_base = trajectory_.back().T_map_base * (T_odom_last_.inverse() * observation.T_odom_base);
+    map_turn_rad_ = WrapPi(Yaw(T_map_base) - observation.yaw_rad);
   }
 
   const PosePrior prior = Predict(observation);
@@ -45,8 +53,11 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   trajectory_.push_back({observation.stamp, T_map_base});
 
   const Pose since_keyframe = keyframes_.empty() ? Pose::Identity() : keyframes_.back().T_map_base.inverse() * T_map_base;
-  if (keyframes_.empty() || since_keyframe.translation().norm() >= config_.keyframe_distance_m ||
-      std::abs(Yaw(since_keyframe)) >= config_.keyframe_angle_rad) {
+  // The first key frame must be something to hold on to; later ones must have held on to it.
+  const bool trusted = keyframes_.empty() ? static_cast<int>(source.size()) >= config_.icp.inliers_min : last_.converged;
+  const bool moved = keyframes_.empty() || since_keyframe.translation().norm() >= config_.keyframe_distance_m ||
+                    std::abs(Yaw(since_keyframe)) >= config_.keyframe_angle_rad;
+  if (trusted && moved) {
     local_.Insert(observation.points_base, T_map_base, path_m_);
     occupancy_.Insert(observation, T_map_base);
     keyframes_.push_back({observation.stamp, T_map_base, observation.points_base});

@@ -24,7 +24,7 @@ struct SlamConfig {
   double yaw_floor_rad = 0.003;         // [1e-5, 1] the heading's sigma is not believed below this; guess
   double floor_sigma_m = 0.002;         // [1e-4, 10] the car stays on a plane: height...
   double tilt_sigma_rad = 0.001;        // [1e-4, 3] ...roll and pitch. At 0.01 and 0.005 the map slowly climbed: 1 % too short
-  double start_sigma_rad = 0.003;       // [1e-4, 10] mapping waits until the heading is known this well,...
+  double start_sigma_rad = 0.004;       // [1e-4, 10] mapping waits until the heading is known this well,...
   double start_wait_s = 2.0;            // [0, 100] ...but no longer than this
   double map_voxel_m = 0.04;            // [0.005, 1] of the map that is written
   int map_points_min = 2;               // [1, 1000] points a voxel of it needs
@@ -66,11 +66,13 @@ class Slam {
   explicit Slam(const SlamConfig& config);
 
   // The pose at the observation's stamp; nothing while mapping waits for the heading to settle at the start.
-  // The map frame: origin where mapping began, axes along the world's as the compass has them.
+  // The map frame: origin where mapping began, axes along the world's as the compass has them, or, where it has none at
+  // the start, along the car's. Nothing for an odometry that is not finite.
   std::optional<Pose> Update(const Observation& observation);
 
   const RegisterResult& last() const { return last_; }  // how well the last frame fitted
-  int lost_frames() const { return lost_frames_; }      // frames in a row that did not; odometry carried the pose
+  // Frames in a row that did not: odometry carried the pose, and nothing of them entered the map.
+  int lost_frames() const { return lost_frames_; }
   const VoxelMap& local_map() const { return local_; }
   const OccupancyGrid& occupancy() const { return occupancy_; }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
@@ -92,6 +94,7 @@ class Slam {
   int lost_frames_ = 0;
   double path_m_ = 0.0, pruned_at_m_ = 0.0;
   std::optional<Time> first_stamp_;
+  std::optional<double> map_turn_rad_;  // yaw in the map less the heading's
   Pose T_odom_last_ = Pose::Identity();
 };
 

@@ -7,7 +7,7 @@
 namespace merlin {
 namespace {
 
-// In units of one hit's evidence: a hit outweighs two passes, and a few looks are enough to change one's mind.
+// A hit weighs as much as four passes, and ten hits are the most that is remembered: what has gone is soon forgotten.
 constexpr int kHit = 4;
 constexpr int kPass = -1;
 constexpr int kLimit = 40;

@@ -15,7 +15,7 @@ struct OccupancyConfig {
   double cell_m = 0.05;            // [0.01, 1] edge
   double height_min_m = 0.08;      // [-1, 3] lower points are floor
   double height_max_m = 1.2;       // [0, 10] higher ones are over the car
-  double sweep_rad = 0.1;          // [0, 1.6] rays steeper than this against the floor free nothing: they pass over things
+  double sweep_rad = 0.1;          // [0, 1.5] rays steeper than this against the floor free nothing: they pass over things
 };
 
 template <class Visitor>
@@ -23,7 +23,7 @@ void Visit(Visitor& v, OccupancyConfig& c) {
   v("cell_m", c.cell_m, {0.01, 1.0});
   v("height_min_m", c.height_min_m, {-1.0, 3.0});
   v("height_max_m", c.height_max_m, {0.0, 10.0});
-  v("sweep_rad", c.sweep_rad, {0.0, 1.6});
+  v("sweep_rad", c.sweep_rad, {0.0, 1.5});
 }
 
 class OccupancyGrid {

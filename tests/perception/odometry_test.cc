@@ -80,7 +80,7 @@ TEST(Odometry, ClosesAFullCircleEitherWayRound) {
   }
 }
 
-TEST(Heading, IsUnknownBeforeTheFirstReading) { EXPECT_TRUE(std::isinf(Heading({}).Sigma_rad())); }
+TEST(Heading, IsUnknownBeforeTheFirstReading) { EXPECT_TRUE(std::isinf(Heading({}).Sigma_rad(Time{0}, 0.0))); }
 
 TEST(Heading, AveragesReadingsAtRestAsIndependentOnesAcrossPi) {
   HeadingConfig config;
@@ -88,7 +88,15 @@ TEST(Heading, AveragesReadingsAtRestAsIndependentOnesAcrossPi) {
   Heading heading(config);
   for (int i = 0; i < 100; ++i) heading.Update(FromSeconds(0.1 * i), WrapPi(pi + (i % 2 ? 0.01 : -0.01)), 0.5);
   EXPECT_NEAR(std::abs(heading.Yaw_rad(0.5)), pi, 2e-3);
-  EXPECT_NEAR(heading.Sigma_rad(), config.compass_sigma_rad / 10.0, 1e-6);  // sigma / sqrt(n)
+  EXPECT_NEAR(heading.Sigma_rad(FromSeconds(9.9), 0.5), config.compass_sigma_rad / 10.0, 1e-6);  // sigma / sqrt(n)
+}
+
+TEST(Heading, GrowsLessSureWithoutReadings) {
+  const HeadingConfig config;
+  Heading heading(config);
+  heading.Update(Time{0}, 1.0, 0.0);
+  const double expected = std::hypot(config.compass_sigma_rad, config.drift_per_turn * 2.0, config.drift_rad_per_sqrt_s * 10.0);
+  EXPECT_NEAR(heading.Sigma_rad(FromSeconds(100.0), 2.0), expected, 1e-12);  // 100 s and a turn of 2 rad later
 }
 
 TEST(Heading, FollowsTheWheelsBetweenReadings) {

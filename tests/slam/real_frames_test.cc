@@ -102,6 +102,7 @@ TEST(RealFrames, RegisterNeighboursFromFifteenCentimetresAndFiveDegreesAway) {
     }
     const Pose error = T_a_b.inverse() * result.T_map_base;
     const double error_deg = LogSo3(error.linear()).norm() * 180.0 / std::numbers::pi;
+    EXPECT_TRUE(result.converged) << target;
     std::printf("pair %d-%d: %.1f cm, %.2f deg, %d iterations, converged %d\n", target, target + 1,
                 100.0 * error.translation().norm(), error_deg, result.iterations, result.converged);
     EXPECT_LT(error.translation().norm(), 0.095) << target;

@@ -59,6 +59,50 @@ TEST(Slam, WaitsForTheHeadingAtTheStartButNotForEver) {
   EXPECT_TRUE(slam.Update(observation));
 }
 
+TEST(Slam, BeginsItsMapOnlyWithSomethingToHoldOnTo) {
+  Slam slam({});
+  Observation blind;
+  blind.yaw_sigma_rad = 0.001;
+  ASSERT_TRUE(slam.Update(blind));
+  EXPECT_TRUE(slam.keyframes().empty());
+  EXPECT_EQ(slam.lost_frames(), 0);
+  ASSERT_TRUE(slam.Update(InRoom(Pose::Identity(), 0.05)));
+  ASSERT_TRUE(slam.Update(InRoom(Pose::Identity(), 0.10)));
+  EXPECT_TRUE(slam.last().converged);
+}
+
+TEST(Slam, MapsNothingItDidNotRecognise) {
+  Slam slam({});
+  ASSERT_TRUE(slam.Update(InRoom(Pose::Identity(), 0.0)));
+  Observation elsewhere = InRoom(Pose::Identity(), 0.05);
+  for (Point& point : elsewhere.points_base) point.position.z() += 5.0f;
+  elsewhere.T_odom_base = FromXyYaw(0.5, 0.0, 0.0);
+  ASSERT_TRUE(slam.Update(elsewhere));
+  EXPECT_EQ(slam.keyframes().size(), 1u);
+}
+
+TEST(Slam, KeepsItsDirectionWhenAHeadingComesLate) {
+  Slam slam({});
+  Observation observation = InRoom(Pose::Identity(), 0.0);
+  observation.yaw_sigma_rad = std::numeric_limits<double>::infinity();
+  slam.Update(observation);
+  observation.stamp = FromSeconds(2.0);
+  ASSERT_TRUE(slam.Update(observation));
+  observation.stamp = FromSeconds(2.05);
+  observation.yaw_rad = 1.5;  // the compass wakes up
+  observation.yaw_sigma_rad = 0.01;
+  const auto pose = slam.Update(observation);
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(Yaw(*pose), 0.0, 0.005);
+}
+
+TEST(Slam, GivesNoPoseForOdometryThatIsNotFinite) {
+  Slam slam({});
+  Observation observation = InRoom(Pose::Identity(), 0.0);
+  observation.T_odom_base.translation().x() = std::nan("");
+  EXPECT_FALSE(slam.Update(observation));
+}
+
 TEST(Slam, SaysThatItIsLostAndDrivesOnByOdometry) {
   Slam slam({});
   ASSERT_TRUE(slam.Update(InRoom(Pose::Identity(), 0.0)));
