@@ -31,7 +31,7 @@ DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const Percep
       pilot_(car, task, pilot) {}
 
 bool DriveLoop::Tick(const LoopObserver& observer) {
-  while (auto state = robot_.drive->Poll()) last_drive_ = state->stamp, pipeline_.Add(*state);
+  while (auto state = robot_.drive->Poll()) last_drive_ = robot_.clock->Now(), pipeline_.Add(*state);
   while (robot_.compass != nullptr) {
     const auto reading = robot_.compass->Poll();
     if (!reading) break;
@@ -45,7 +45,7 @@ bool DriveLoop::Tick(const LoopObserver& observer) {
   }
   bool done = false;
   while (auto frame = robot_.depth->Poll()) {
-    last_depth_ = frame->stamp;
+    last_depth_ = robot_.clock->Now();
     if (observer.depth) observer.depth(*frame);
     const auto begin = std::chrono::steady_clock::now();
     const auto observation = pipeline_.Process(std::move(*frame));

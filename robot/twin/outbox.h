@@ -19,9 +19,11 @@ class Outbox {
 
   void Put(Time stamp, std::future<Measurement> measurement) {
     waiting_.push_back({stamp, std::move(measurement)});
-    if (waiting_.size() <= kCapacity) return;
-    waiting_.pop_front();  // the reader is too slow
-    ++status_.missed;
+    // Of those that could have been taken a slow reader keeps the newest few; what is on its way is not his fault.
+    while (waiting_.size() > kCapacity && waiting_[kCapacity].stamp + latency_ <= stamp) {
+      waiting_.pop_front();
+      ++status_.missed;
+    }
   }
   void Put(Time stamp, Measurement measurement) {
     std::promise<Measurement> promise;
