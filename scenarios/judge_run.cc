@@ -29,6 +29,7 @@ std::vector<MapPoint> MapPoints(const Slam& slam, int points_min) {
 }
 
 GridMap ToGridMap(const OccupancyGrid& grid) {
+  if (grid.width() == 0) return {1, 1, grid.cell_m(), {0.0, 0.0}, {-1}};  // nothing seen: one unknown cell, still a map
   GridMap map{grid.width(), grid.height(), grid.cell_m(), grid.origin_m(), {}};
   for (int row = 0; row < grid.height(); ++row)
     for (int column = 0; column < grid.width(); ++column) map.cells.push_back(static_cast<std::int8_t>(grid.At(column, row)));

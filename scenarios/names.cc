@@ -24,10 +24,11 @@ fs::path Resolve(const std::string& what, const std::string& name, const fs::pat
                  const std::vector<std::string>& known) {
   const bool is_path = name.find('/') != std::string::npos || name.ends_with(ending);
   const fs::path file = is_path ? fs::path(name) : named;
-  if (fs::is_regular_file(file)) return file;
+  std::error_code unreadable;
+  if (fs::is_regular_file(file, unreadable)) return file;
   if (is_path) throw InputError(name, "no such " + what + " file");
-  throw InputError("unknown " + what + " '" + name + "'" +
-                   (known.empty() ? "" : "; did you mean '" + NearestName(name, known) + "'?"));
+  if (known.empty()) throw InputError(named.parent_path().string(), "no " + what + " there; is MERLIN_HOME right?");
+  throw InputError("unknown " + what + " '" + name + "'; did you mean '" + NearestName(name, known) + "'?");
 }
 
 }  // namespace

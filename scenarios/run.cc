@@ -1,16 +1,19 @@
 #include "scenarios/run.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <ranges>
 #include <thread>
 
 #include "robot/description/description.h"
 #include "robot/twin/twin.h"
 #include "robot/types/error.h"
+#include "robot/types/nearest_name.h"
 #include "scenarios/drive_loop.h"
 #include "scenarios/judge_run.h"
 #include "scenarios/judge/output_folder.h"
@@ -24,6 +27,16 @@ using WallClock = std::chrono::steady_clock;
 
 double SecondsSince(WallClock::time_point begin) { return std::chrono::duration<double>(WallClock::now() - begin).count(); }
 
+void RequireRate(const char* field, double rate_hz, double max_hz) {
+  if (!(rate_hz <= max_hz)) throw InputError(field, "faster than the camera", fmt::format("up to {:g} Hz", max_hz), fmt::format("{:g} Hz", rate_hz));
+}
+
+void RequireMaterial(const std::string& name, const sim::Materials& materials) {
+  if (materials.by_name.contains(name)) return;
+  throw InputError("obstacles", fmt::format("unknown material '{}'; did you mean '{}'?", name,
+                                            NearestName(name, std::views::keys(materials.by_name))));
+}
+
 TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   const Sensors& sensors = scenario.sensors;
   TwinOptions twin;
@@ -36,9 +49,14 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
                 {sensors.depth.integration_us * 1e-6, sensors.depth.frequency_mhz * 1e6},
                 sim::ParseTofEffects(sensors.depth.effects),
                 sensors.depth.rate_hz};
+  RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, twin.depth.sheet.rate_max_hz);
+  RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz,
+              0.25 / (twin.depth.settings.integration_s + twin.depth.sheet.readout_s));  // four sub-frames
+  for (const ObstacleEvent& event : scenario.obstacles) RequireMaterial(event.material, twin.materials);
   twin.depth.sheet.latency_s = sensors.depth.latency_s.value_or(twin.depth.sheet.latency_s);
   if (sensors.color) {
     twin.color.emplace(ReadColorCameraSheet(CameraFile(sensors.color->camera)), sensors.color->rate_hz, options.gl);
+    RequireRate("sensors.color.rate_hz", sensors.color->rate_hz, twin.color->sheet.rate_max_hz);
     twin.color->sheet.latency_s = sensors.color->latency_s.value_or(twin.color->sheet.latency_s);
   }
   if (sensors.compass)
@@ -46,6 +64,13 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   twin.end = FromSeconds(scenario.duration_s);
   twin.threads = options.threads;
   return twin;
+}
+
+// A check of the map against a plan needs a plan.
+void RequirePlan(const RunOptions& options, const sim::World& world) {
+  for (const CheckLimit& check : options.scenario.checks)
+    if (world.plan_xy_m().empty() && (check.name.starts_with("map_size") || check.name.starts_with("laps") || check.name.starts_with("coverage")))
+      throw InputError(options.scenario.room, "no plan", "a numeric plan_xy_m, which the check " + check.name + " needs");
 }
 
 // Without GL a scenario that can do without colour runs on depth alone, and says so.
@@ -77,11 +102,13 @@ double PeakRss_mb() {
 // Holds the run back to the wall's pace, and reports progress now and then.
 class Pacer {
  public:
-  explicit Pacer(const RunOptions& options) : options_(options) {}
+  Pacer(const RunOptions& options, const std::atomic<bool>& stop) : options_(options), stop_(stop) {}
   void Tick(Time now, double distance_m, const std::string& doing) {
-    if (options_.pace > 0.0)
-      std::this_thread::sleep_until(begin_ + std::chrono::duration_cast<WallClock::duration>(
-                                                 std::chrono::duration<double>(Seconds(now) / options_.pace)));
+    while (options_.pace > 0.0 && !stop_.load()) {
+      const double ahead_s = Seconds(now) / options_.pace - SecondsSince(begin_);
+      if (ahead_s <= 0.0) break;
+      std::this_thread::sleep_for(std::chrono::duration<double>(std::min(ahead_s, 0.05)));  // Ctrl-C must not wait
+    }
     if (!options_.progress || SecondsSince(reported_) < 0.2) return;
     reported_ = WallClock::now();
     options_.progress(now, distance_m, doing);
@@ -89,6 +116,7 @@ class Pacer {
 
  private:
   const RunOptions& options_;
+  const std::atomic<bool>& stop_;
   WallClock::time_point begin_ = WallClock::now(), reported_ = begin_;
 };
 
@@ -99,6 +127,7 @@ RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) 
   const Scenario& scenario = options.scenario;
   RunReport report;
   const std::unique_ptr<Twin> twin = MakeTwin(TwinOptionsOf(scenario, options), scenario, report.note);
+  RequirePlan(options, twin->world());
   OutputFolder folder(options.out);
   folder.Write("scenario.yaml", ToYaml(scenario));
   report.gl_name = twin->gl_name();
@@ -110,7 +139,7 @@ RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) 
   Evidence evidence;
   const double setup_s = SecondsSince(begin);
   const auto first_step = WallClock::now();
-  Pacer pacer(options);
+  Pacer pacer(options, stop);
   const LoopEnd end = loop.Run(
       stop, {.depth = [&](const DepthFrame& frame) { evidence.Add(frame), truth.Keep(frame.stamp); },
              .color = [&](const ColorFrame& frame) { evidence.Add(frame); },
@@ -125,6 +154,7 @@ RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) 
   result.metrics.real_time_factor = *result.metrics.sim_time_s / wall_s;
   result.metrics.peak_rss_mb = PeakRss_mb();
   result.checks = Evaluate(scenario.checks, result.metrics, options.name);
+  if (end == LoopEnd::kDeviceLost) result.fault = "the depth camera or the drive fell silent for a second";
   result.verdict = end == LoopEnd::kInterrupted ? Verdict::kInterrupted
                    : end == LoopEnd::kDeviceLost ? Verdict::kFail
                                                  : Judge(result.checks);

@@ -45,6 +45,15 @@ void Override(YAML::Node root, const std::string& text) {
   node[path] = value;
 }
 
+// A path in a scenario stands beside it, where there is such a file: so it works from any folder, and so does what is
+// written out of it.
+void Anchor(std::string& name, const std::filesystem::path& folder) {
+  std::error_code ignored;
+  const std::filesystem::path beside = folder / name;
+  if (name.find('.') != std::string::npos && std::filesystem::is_regular_file(beside, ignored))
+    name = std::filesystem::absolute(beside).lexically_normal().string();
+}
+
 }  // namespace
 
 Scenario ReadScenario(const std::string& name, const std::vector<std::string>& overrides) {
@@ -53,14 +62,26 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
   if (!root.IsMap()) throw InputError(file.string(), "no scenario", "a map of keys (room, car, sensors, task, ...)");
   for (const std::string& text : overrides) Override(root, text);
 
+  std::set<std::string> sets;
+  for (const std::string& text : overrides) sets.insert(text.substr(0, text.find('=')));
+
   Scenario scenario;
   std::vector<std::string> faults;
-  YamlReader(root, file.string(), "", faults).ReadInto(scenario);
+  YamlReader(root, file.string(), "", sets, faults).ReadInto(scenario);
+  const auto anchor = [&](const char* field, std::string& named) {
+    if (!sets.contains(field)) Anchor(named, file.parent_path());
+  };
+  anchor("room", scenario.room);
+  anchor("car.model", scenario.car.model);
+  anchor("sensors.depth.camera", scenario.sensors.depth.camera);
+  if (scenario.sensors.color) anchor("sensors.color.camera", scenario.sensors.color->camera);
   if (!root["room"].IsDefined()) faults.push_back(file.string() + ": room: missing; which room to drive in");
   const std::vector<std::string> behaviors = BehaviorNames();
   if (std::ranges::find(behaviors, scenario.task.behavior) == behaviors.end())
     faults.push_back(file.string() + ": task.behavior: unknown behavior '" + scenario.task.behavior + "'; did you mean '" +
                      NearestName(scenario.task.behavior, behaviors) + "'?");
+  for (const ObstacleEvent& event : scenario.obstacles)
+    if (!(event.disappear_s > event.appear_s)) faults.push_back(file.string() + ": obstacles: one disappears before it appears");
   if (faults.empty()) return scenario;
   std::string all = faults.front();
   for (std::size_t i = 1; i < faults.size(); ++i) all += "\n" + faults[i];

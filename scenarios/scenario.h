@@ -41,7 +41,7 @@ void Visit(Visitor& v, CarChoice& c) {
 
 struct DepthSensor {
   std::string camera = "pmd_3k_s";  // models/cameras/<name>.yaml, or a path
-  double rate_hz = 20.0;
+  double rate_hz = 20.0;            // of the stack too; up to the sheet's
   std::string effects = "all";      // all, ideal, or names
   double integration_us = 1000.0;   // valid ones: the camera's sheet
   double frequency_mhz = 20.0;
@@ -51,11 +51,11 @@ struct DepthSensor {
 template <class Visitor>
 void Visit(Visitor& v, DepthSensor& c) {
   v("camera", c.camera);
-  v("rate_hz", c.rate_hz, {0.1, 500.0});
+  v("rate_hz", c.rate_hz, {5.0, 500.0});
   v("effects", c.effects);
   v("integration_us", c.integration_us, {1.0, 1e6});
   v("frequency_mhz", c.frequency_mhz, {0.1, 1000.0});
-  v("latency_s", c.latency_s, {0.0, 10.0});
+  v("latency_s", c.latency_s, {0.0, 0.5});
 }
 
 struct ColorSensor {
@@ -70,7 +70,7 @@ void Visit(Visitor& v, ColorSensor& c) {
   v("camera", c.camera);
   v("rate_hz", c.rate_hz, {0.1, 500.0});
   v("required", c.required);
-  v("latency_s", c.latency_s, {0.0, 10.0});
+  v("latency_s", c.latency_s, {0.0, 0.5});
 }
 
 struct CompassSensor {
@@ -150,7 +150,7 @@ void Visit(Visitor& v, Scenario& c) {
   v("pilot", c.pilot);
 }
 
-// name: of a file in scenarios/ without its ending, or a path. overrides: "a.b=c" each, applied over the file.
+// name: of a file in scenarios/ without its ending, or a path; paths in it are relative to its own folder. overrides: "a.b=c" each, applied over the file.
 // Throws InputError: unknown scenario or key (names the nearest), broken YAML (file and line), a value of the wrong kind or
 // out of its range, an unknown check or behavior: all faults at once, a line each.
 Scenario ReadScenario(const std::string& name, const std::vector<std::string>& overrides);

@@ -3,6 +3,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <charconv>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <string>
@@ -27,8 +29,10 @@ struct IsOptional<std::optional<T>> : std::true_type {};
 // Fills a config from a map node; collects every fault instead of stopping at the first.
 class YamlReader {
  public:
-  YamlReader(const YAML::Node& node, std::string file, std::string path, std::vector<std::string>& faults)
-      : node_(node), file_(std::move(file)), path_(std::move(path)), faults_(faults) {}
+  // sets: the dotted paths that --set has written over; faults there are its, not the file's.
+  YamlReader(const YAML::Node& node, std::string file, std::string path, const std::set<std::string>& sets,
+             std::vector<std::string>& faults)
+      : node_(node), file_(std::move(file)), path_(std::move(path)), sets_(sets), faults_(faults) {}
 
   template <class T>
   void operator()(const char* key, T& value, Range range = {}) {
@@ -43,17 +47,24 @@ class YamlReader {
   void ReadInto(Config& config) {
     if (!node_.IsMap()) return Fault(node_, path_.empty() ? "the file" : path_.substr(0, path_.size() - 1), "expected a map of keys");
     Visit(*this, config);
+    std::set<std::string> seen;
     for (const auto& entry : node_) {
       const std::string key = entry.first.Scalar();
+      if (!seen.insert(key).second) Fault(entry.first, path_ + key, "given twice");
       if (!known_.contains(key))
         Fault(entry.first, path_ + key, "unknown key; did you mean '" + NearestName(key, known_) + "'?");
     }
   }
 
  private:
-  void Fault(const YAML::Node& node, const std::string& field, const std::string& what) {
+  std::string Where(const YAML::Node& node, const std::string& field) const {
+    for (const std::string& set : sets_)
+      if (field == set || field.starts_with(set + ".") || field.starts_with(set + "[")) return "--set";
     const YAML::Mark mark = node.Mark();
-    faults_.push_back(file_ + (mark.is_null() ? "" : ":" + std::to_string(mark.line + 1)) + ": " + field + ": " + what);
+    return file_ + (mark.is_null() ? "" : ":" + std::to_string(mark.line + 1));
+  }
+  void Fault(const YAML::Node& node, const std::string& field, const std::string& what) {
+    faults_.push_back(Where(node, field) + ": " + field + ": " + what);
   }
 
   template <class T>
@@ -69,7 +80,7 @@ class YamlReader {
       for (std::size_t i = 0; i < node.size(); ++i)
         Read(node[i], field + "[" + std::to_string(i) + "]", value.emplace_back(), range);
     } else if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string>) {
-      YamlReader(node, file_, field + ".", faults_).ReadInto(value);
+      YamlReader(node, file_, field + ".", sets_, faults_).ReadInto(value);
     } else {
       ReadScalar(node, field, value, range);
     }
@@ -80,16 +91,24 @@ class YamlReader {
     const char* kind = std::is_same_v<T, std::string> ? "a text" : std::is_same_v<T, bool> ? "true or false"
                        : std::is_integral_v<T> ? "a whole number" : "a number";
     const std::string got = node.IsScalar() ? "got '" + node.Scalar() + "'" : "got no single value";
-    try {
-      if (std::is_unsigned_v<T> && node.IsScalar() && node.Scalar().starts_with('-')) throw YAML::Exception(node.Mark(), "");
-      value = node.as<T>();
-    } catch (const YAML::Exception&) {
-      return Fault(node, field, "expected " + std::string(kind) + ", " + got);
-    }
+    if (!Convert(node, value)) return Fault(node, field, "expected " + std::string(kind) + ", " + got);
     if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
       const double number = static_cast<double>(value);
       if (!std::isfinite(number) || !(number >= range.min && number <= range.max))
         Fault(node, field, "expected a number in [" + detail::Text(range.min) + ", " + detail::Text(range.max) + "], " + got);
+    }
+  }
+
+  // As typed: yaml-cpp takes 010 for eight.
+  template <class T>
+  static bool Convert(const YAML::Node& node, T& value) {
+    if (!node.IsScalar()) return false;
+    if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+      const std::string& text = node.Scalar();
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      return error == std::errc() && end == text.data() + text.size();
+    } else {
+      return YAML::convert<T>::decode(node, value);
     }
   }
 
@@ -101,7 +120,7 @@ class YamlReader {
       ReadScalar(entry.second, field + "." + check.name, check.limit, {-1e12, 1e12});
       checks.push_back(check);
       try {
-        RequireKnown(check, file_ + ":" + std::to_string(entry.first.Mark().line + 1));
+        RequireKnown(check, Where(entry.first, field + "." + check.name));
       } catch (const std::exception& error) {
         faults_.push_back(error.what());
       }
@@ -110,6 +129,7 @@ class YamlReader {
 
   YAML::Node node_;
   std::string file_, path_;
+  const std::set<std::string>& sets_;
   std::vector<std::string>& faults_;
   std::set<std::string> known_;
 };

@@ -16,6 +16,7 @@ namespace merlin::sim {
 namespace {
 
 constexpr double kParkingHeight_m = -50.0;  // of obstacles that are away
+constexpr double kFarthest_m = 1e5;         // of any geom from the origin
 constexpr double kFloorSearch_m = 0.5;      // above and below the start's height
 
 // MuJoCo's own handler prints, writes a file and exits.
@@ -39,7 +40,8 @@ std::string OneLine(std::string text) {
 }
 
 SpecPtr ParseRoom(const std::filesystem::path& room) {
-  if (!std::filesystem::is_regular_file(room)) throw InputError(room.string(), "no such room", "an MJCF file");
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(room, unreadable)) throw InputError(room.string(), "no such room", "an MJCF file");
   char error[1024] = "";
   SpecPtr spec(mj_parseXML(room.c_str(), nullptr, error, sizeof error), mj_deleteSpec);
   if (!spec) throw InputError(Where(room, error), "not a room (MJCF): " + OneLine(error));
@@ -48,6 +50,7 @@ SpecPtr ParseRoom(const std::filesystem::path& room) {
 
 // The physics that the car was tuned with, and nothing of the room's that would change the car.
 void SetOptions(mjSpec* spec) {
+  mj_defaultOption(&spec->option);
   spec->option.timestep = Seconds(World::kStep);
   spec->option.integrator = mjINT_IMPLICITFAST;
   spec->option.cone = mjCONE_ELLIPTIC;
@@ -109,6 +112,11 @@ World::World(const WorldOptions& options) {
   NameParts(options.car, options.obstacles);
   PutOnFloor(options);
   mj_forward(model_.get(), data_.get());
+  for (int geom = 0; geom < model_->ngeom; ++geom)
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(data_->geom_xpos[3 * geom + axis]) < kFarthest_m))
+        throw InputError(options.room.string(), "geom '" + GeomName(model_.get(), geom) + "' stands nowhere",
+                         fmt::format("a position within {:g} m", kFarthest_m), fmt::format("{:g}", data_->geom_xpos[3 * geom + axis]));
   RefuseStartInContact(options);
   drive_ = drivetrain::Controller(model_.get(), options.car);
 }
@@ -146,6 +154,8 @@ void World::ReadNumerics(const std::string& room) {
   if (plan.size() % 2 != 0 || (!plan.empty() && plan.size() < 6))
     throw InputError(room, "numeric plan_xy_m", "x and y of three corners or more",
                      fmt::format("{} numbers", plan.size()));
+  for (const mjtNum number : plan)
+    if (!std::isfinite(number)) throw InputError(room, "numeric plan_xy_m", "finite numbers", fmt::format("{}", number));
   for (std::size_t i = 0; i < plan.size(); i += 2) plan_xy_m_.emplace_back(plan[i], plan[i + 1]);
   if (const auto north = numbers("north_yaw_rad"); !north.empty()) north_yaw_rad_ = north[0];
 }

@@ -84,14 +84,14 @@ std::string ToJson(const RunResult& result) {
 std::string ToJUnit(const RunResult& result) {
   const auto failures =
       std::count_if(result.checks.begin(), result.checks.end(), [](const Check& check) { return !check.pass; });
-  const bool interrupted = result.verdict == Verdict::kInterrupted;
+  const std::string error = result.verdict == Verdict::kInterrupted ? "interrupted" : result.fault;
   const double time_s = result.metrics.wall_time_s.value_or(0.0);
   const std::string counts = fmt::format(
       "name=\"{} seed {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"", Xml(result.scenario),
-      result.seed, result.checks.size() + 1, failures, interrupted ? 1 : 0, std::isfinite(time_s) ? time_s : 0.0);
+      result.seed, result.checks.size() + 1, failures, error.empty() ? 0 : 1, std::isfinite(time_s) ? time_s : 0.0);
   std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite " + counts + ">\n";
   xml += fmt::format("    <testcase classname=\"{}\" name=\"run\" time=\"0\"", Xml(result.scenario));
-  xml += interrupted ? ">\n      <error message=\"interrupted\"/>\n    </testcase>\n" : "/>\n";
+  xml += error.empty() ? "/>\n" : fmt::format(">\n      <error message=\"{}\"/>\n    </testcase>\n", Xml(error));
   for (const Check& check : result.checks) xml += TestCase(result, check);
   return xml + "  </testsuite>\n</testsuites>\n";
 }

@@ -21,6 +21,7 @@ struct RunResult {
   std::string scenario{};
   std::uint64_t seed = 0;
   Verdict verdict = Verdict::kFail;
+  std::string fault{};  // what ended the run before its time, but not an interruption: a lost device; else empty
   std::vector<Check> checks{};
   Metrics metrics{};
   Hashes hashes{};
@@ -30,7 +31,8 @@ struct RunResult {
 // The text of result.json. Bytes that are no UTF-8 become U+FFFD.
 std::string ToJson(const RunResult& result);
 
-// The text of junit.xml: one test case a check, and one named "run", in error where the run was interrupted.
+// The text of junit.xml: one test case a check, and one named "run", in error where the run was
+// interrupted or lost a device.
 std::string ToJUnit(const RunResult& result);
 
 }  // namespace merlin

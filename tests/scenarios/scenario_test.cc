@@ -75,10 +75,27 @@ TEST(Scenario, TellsWhatIsWrongWithTheFile) {
   EXPECT_TRUE(Has(Complaint("room: hall\ntask: {behavior: follow_coridor}\n"), "did you mean 'follow_corridor'?"));
 }
 
+TEST(Scenario, TakesNumbersAsTypedAndNoKeyTwice) {
+  EXPECT_TRUE(Has(Complaint("room: hall\nseed: 0x10\n"), "whole number"));
+  EXPECT_TRUE(Has(Complaint("room: hall\nseed: 1\nseed: 2\n"), "s.yaml:3: seed: given twice"));
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "s.yaml";
+  std::ofstream(file) << "room: hall\nseed: 010\n";
+  EXPECT_EQ(ReadScenario(file.string(), {}).seed, 10u);
+}
+
+TEST(Scenario, FindsFilesBesideItselfFromAnyFolder) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "my_room.xml") << "<mujoco/>";
+  const auto file = folder.path() / "s.yaml";
+  std::ofstream(file) << "room: ./my_room.xml\n";
+  EXPECT_EQ(ReadScenario(file.string(), {}).room, (folder.path() / "my_room.xml").string());
+}
+
 TEST(Scenario, SetsOverrideTheFileAndAreCheckedAlike) {
   EXPECT_EQ(Complaint("room: hall\n", {"pilot.speed_m_s=0.3", "sensors.compass.rate_hz=5"}), "");
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.sped_m_s=0.3"}), "did you mean 'speed_m_s'?"));
-  EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.speed_m_s=fast"}), "expected a number, got 'fast'"));
+  EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.speed_m_s=fast"}), "--set: pilot.speed_m_s: expected a number, got 'fast'"));
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot"}), "not an assignment"));
   EXPECT_TRUE(Has(Complaint("room: hall\nseed: 3\n", {"seed.x=1"}), "has no keys below it"));
   const TemporaryFolder folder;
