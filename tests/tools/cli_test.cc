@@ -61,6 +61,10 @@ TEST(Cli, RefusesBadUsageWithExitTwo) {
   ExpectRefused("run corridor_short --pace slow", "--pace", folder.path());
   ExpectRefused("run corridor_short --duration nan", "duration_s", folder.path());
   ExpectRefused("run corridor_short --robot moon", "--robot", folder.path());
+  ExpectRefused("run corridor_short --out ''", "--out", folder.path());
+  ExpectRefused("run corridor_short --duration ''", "--duration", folder.path());
+  ExpectRefused("run corridor_short --duration -1", "--set: duration_s", folder.path());
+  ExpectRefused("run ./" + std::string(300, 'x'), "scenario", folder.path());
   ExpectRefused("list planets", "planets", folder.path());
 }
 
@@ -71,10 +75,17 @@ TEST(Cli, RefusesBadScenariosRoomsAndCamerasWithExitTwo) {
   ExpectRefused("run corridor_short --set sensors.depth.effects=nois", "noise", folder.path());
   ExpectRefused("run corridor_short --set sensors.depth.integration_us=9000", "integration", folder.path());
   ExpectRefused("run corridor_short --set sensors.depth.frequency_mhz=25", "frequency", folder.path());
+  ExpectRefused("run corridor_short --set sensors.depth.rate_hz=121", "120 Hz", folder.path());
+  ExpectRefused("run corridor_short --set 'obstacles=[{material: dark_boks}]'", "dark_box", folder.path());
+  ExpectRefused("run corridor_short --set 'obstacles=[{appear_s: 8, disappear_s: 2}]'", "obstacles", folder.path());
   ExpectRefused("run corridor_short --set car.start.y_m=-8.5", "start", folder.path());
   ExpectRefused("run corridor_short --set car.start.y_m=-10.6", "start", folder.path());
   std::ofstream(folder.path() / "broken.xml") << "<mujoco>\n<worldbody>\n<geom type='ball'/>\n</worldbody>\n</mujoco>\n";
   ExpectRefused("run corridor_short --set room=broken.xml", "broken.xml:3", folder.path());
+  std::ofstream(folder.path() / "nan.xml") << "<mujoco><worldbody><geom name='floor' type='plane' size='9 9 1'/><geom type='box' size='1 1 1' pos='nan 0 0'/></worldbody></mujoco>";
+  ExpectRefused("run corridor_short --set car.start.y_m=0 --set room=nan.xml", "nan.xml", folder.path());
+  std::ofstream(folder.path() / "bare.xml") << "<mujoco><worldbody><geom name='floor' type='plane' size='9 9 1'/></worldbody></mujoco>";
+  ExpectRefused("run corridor_short --set car.start.y_m=0 --set room=bare.xml --set checks.laps_min=1", "plan_xy_m", folder.path());
   std::ofstream(folder.path() / "broken.urdf") << "<robot name='x'>\n<link name='base_link'>\n</robot>\n";
   ExpectRefused("run corridor_short --set car.model=broken.urdf", "broken.urdf:", folder.path());
   std::ofstream(folder.path() / "broken.yaml") << "room: hall\nsensors: {depth: {camera: pmd_3k_s}\n";

@@ -14,11 +14,8 @@ std::atomic<bool> interrupted{false};
 namespace {
 
 // Once: the run ends in good order. Again: at once.
-void OnInterrupt(int signal) {
+void OnInterrupt(int) {
   if (interrupted.exchange(true)) _exit(kInterrupted);
-  struct sigaction action{};
-  action.sa_handler = OnInterrupt;
-  sigaction(signal, &action, nullptr);
 }
 
 int Main(int argc, char** argv) {
@@ -47,8 +44,12 @@ int main(int argc, char** argv) {
   action.sa_handler = merlin::cli::OnInterrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
+  signal(SIGPIPE, SIG_IGN);  // whoever stops reading our progress does not stop the car
   try {
-    return merlin::cli::Main(argc, argv);
+    const int exit_code = merlin::cli::Main(argc, argv);
+    if (std::fflush(stdout) != 0) throw merlin::MachineError("standard output cannot be written");
+    return exit_code;
   } catch (const merlin::InputError& error) {
     std::fprintf(stderr, "merlin: %s\n", error.what());
     return merlin::cli::kBadInput;

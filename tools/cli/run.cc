@@ -79,6 +79,8 @@ void PrintSummary(const RunReport& report, const std::filesystem::path& out) {
   fmt::print("{} seed {}: {}\n", result.scenario, result.seed, Name(result.verdict));
   for (const Check& check : result.checks)
     fmt::print("  {} {:<32} {} (limit {:g})\n", check.pass ? "pass" : "FAIL", check.name, Number(check.value, 3), check.limit);
+  if (result.checks.empty()) fmt::print("  nothing was checked: the scenario has no checks\n");
+  if (!result.fault.empty()) fmt::print("  stopped: {}\n", result.fault);
   if (!report.note.empty()) fmt::print("  note: {}\n", report.note);
   fmt::print("  drove {} m in {} s, {} laps, {} collisions\n", Number(m.distance_m, 2), Number(m.sim_time_s, 1), m.laps.value_or(0),
              m.collisions.value_or(0));
@@ -138,9 +140,11 @@ int Run(const Arguments& arguments) {
 namespace {
 
 std::string WholeNumber(const std::string& text) {
-  const bool whole = !text.empty() && text.size() <= 19 && text.find_first_not_of("0123456789") == std::string::npos;
+  const bool whole = !text.empty() && text.size() <= 20 && text.find_first_not_of("0123456789") == std::string::npos;
   return whole ? "" : "expected a whole number from 0 on, got '" + text + "'";
 }
+
+std::string NotEmpty(const std::string& text) { return text.empty() ? "expected a value, got nothing" : ""; }
 
 }  // namespace
 
@@ -149,13 +153,13 @@ void AddRun(CLI::App& app, int& exit_code) {
   CLI::App* run = app.add_subcommand("run", "runs a scenario and judges it");
   run->add_option("scenario", arguments->scenario, "a name in scenarios/, or a path")->required();
   run->add_option("--seed", arguments->seed, "of all randomness; default the scenario's")->check(WholeNumber);
-  run->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-<seed>");
+  run->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-<seed>")->check(NotEmpty);
   run->add_option("--robot", arguments->robot, "twin");
   run->add_option("--pace", arguments->pace, "fast (default), real, or a factor of real time");
   run->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
   run->add_option("--threads", arguments->threads, "same bits for any number; default 2")->check(CLI::Range(1, 256));
   run->add_option("--set", arguments->sets, "a.b=c, over the scenario's file; may be repeated")->allow_extra_args(false);
-  run->add_option("--duration", arguments->duration_s, "seconds, instead of the scenario's");
+  run->add_option("--duration", arguments->duration_s, "seconds, instead of the scenario's")->check(NotEmpty);
   run->add_flag("--json", arguments->json, "print result.json instead of the summary");
   run->callback([arguments, &exit_code] { exit_code = Run(*arguments); });
 }

@@ -9,7 +9,7 @@ check_mujoco_root() {
   [ -n "${MUJOCO_ROOT-}" ] || return 0
   local file
   for file in include/mujoco/mujoco.h "$mujoco_library"; do
-    [ -e "$MUJOCO_ROOT/$file" ] || stop 3 "MUJOCO_ROOT=$MUJOCO_ROOT: no $file there; expected a MuJoCo $mujoco_version"
+    [ -e "$MUJOCO_ROOT/$file" ] || [ -e "$MUJOCO_ROOT/lib/$file" ] || stop 3 "MUJOCO_ROOT=$MUJOCO_ROOT: no $file there; expected a MuJoCo $mujoco_version"
   done
   mujoco_root=$(readlink -f "$MUJOCO_ROOT")
 }
