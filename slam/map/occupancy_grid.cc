@@ -11,6 +11,7 @@ namespace {
 constexpr int kHit = 4;
 constexpr int kPass = -1;
 constexpr int kLimit = 40;
+constexpr double kFarthest_m = 100.0;  // no range is longer; a wrong one must not make the grid huge
 
 }  // namespace
 
@@ -56,6 +57,7 @@ void OccupancyGrid::Insert(const Observation& observation, const Pose& T_map_bas
   GrowTo(from.x(), from.y());
   for (const Point& point : observation.points_base) {
     const Eigen::Vector3d p_map = T_map_base * point.position.cast<double>();
+    if (!((p_map - camera_map).norm() < kFarthest_m)) continue;  // not finite either
     const Eigen::Vector3d ray = p_map - camera_map;
     const Eigen::Vector2i to = cell_of(p_map);
     GrowTo(to.x(), to.y());

@@ -18,6 +18,10 @@ std::size_t Hash(const std::array<std::int32_t, 3>& cell) {
   return static_cast<std::size_t>(h ^ (h >> 32));
 }
 
+// Points farther out, or not finite, have no cell: they are left out.
+constexpr float kReach_m = 1e6f;
+bool InReach(const Eigen::Vector3f& point) { return (point.array().abs() < kReach_m).all(); }
+
 template <class Function>
 void ForNeighbours(const std::array<std::int32_t, 3>& cell, Function function) {
   for (int dx = -1; dx <= 1; ++dx)
@@ -73,6 +77,7 @@ void VoxelMap::Insert(std::span<const Point> points_base, const Pose& T_map_base
   touched.reserve(points_base.size());
   for (const Point& point : points_base) {
     const Eigen::Vector3d p_map = T_map_base * point.position.cast<double>();
+    if (!InReach(p_map.cast<float>())) continue;
     const Cell cell = CellOf(p_map);
     Voxel& voxel = FindOrAdd(cell);
     const double weight = 1e-4 / std::max<double>(point.sigma_m * point.sigma_m, 1e-6);
@@ -128,6 +133,7 @@ void VoxelMap::ForgetBefore(double path_m) {
 }
 
 const Voxel* VoxelMap::Nearest(const Eigen::Vector3f& point_map) const {
+  if (!InReach(point_map)) return nullptr;
   const Voxel* nearest = nullptr;
   float best = HUGE_VALF;
   ForNeighbours(CellOf(point_map.cast<double>()), [&](const Cell& cell) {
@@ -151,6 +157,7 @@ std::vector<Point> Downsample(std::span<const Point> points, double voxel_m) {
   std::vector<Point> out;
   std::vector<int> counts;
   for (const Point& point : points) {
+    if (!InReach(point.position)) continue;
     const Eigen::Vector3f cell = (point.position / static_cast<float>(voxel_m)).array().floor();
     const auto [it, added] = index_of.try_emplace({static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
                                                    static_cast<std::int32_t>(cell.z())},

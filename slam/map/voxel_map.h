@@ -1,5 +1,5 @@
 // A sparse map of cubic voxels. Each voxel keeps the weighted moments of the points that fell into it; with its 26
-// neighbours they give a surface: mean, normal, flatness.
+// neighbours they give a surface: mean, normal, flatness. Points that are not finite, or beyond 1000 km, are left out.
 #pragma once
 
 #include <Eigen/Core>

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace merlin {
 namespace {
 
@@ -43,6 +45,12 @@ TEST(OccupancyGrid, ChangesItsMindWhenSomethingHasGone) {
   EXPECT_EQ(grid.At({1.02, 0.02}), Cell::kOccupied);
   for (int i = 0; i < 5; ++i) grid.Insert(Looking({{3.02f, 0.02f, 0.35f}}), Pose::Identity());
   EXPECT_EQ(grid.At({1.02, 0.02}), Cell::kFree);
+}
+
+TEST(OccupancyGrid, LeavesOutWhatIsNotFiniteOrAbsurdlyFar) {
+  OccupancyGrid grid({});
+  grid.Insert(Looking({{std::nanf(""), 0.0f, 0.35f}, {1e9f, 0.0f, 0.35f}}), Pose::Identity());
+  EXPECT_LT(grid.width(), 1000);
 }
 
 TEST(OccupancyGrid, GrowsAndKeepsWhatItKnew) {

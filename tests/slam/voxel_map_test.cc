@@ -83,6 +83,18 @@ TEST(VoxelMap, WeighsPointsByTheirPrecision) {
   EXPECT_NEAR(map.voxels()[0].mean.x(), (4.0 * 0.2 + 1.0 * 0.7) / 5.0, 1e-6);  // 1 / sigma^2: 4 to 1
 }
 
+TEST(VoxelMap, LeavesOutPointsThatAreNotFinite) {
+  VoxelMap map({});
+  const float bad[] = {std::nanf(""), HUGE_VALF, 1e30f};
+  for (const float value : bad) {
+    const std::vector<Point> points{{.position = {value, 0.0f, 0.0f}, .sigma_m = 0.01f}};
+    map.Insert(points, Pose::Identity(), 0.0);
+    EXPECT_TRUE(map.voxels().empty());
+    EXPECT_EQ(map.Nearest(points[0].position), nullptr);
+    EXPECT_TRUE(Downsample(points, 0.1).empty());
+  }
+}
+
 TEST(Downsample, KeepsOneMeanPointAVoxel) {
   EXPECT_TRUE(Downsample({}, 0.1).empty());
   const std::vector<Point> points{{.position = {0.01f, 0, 0}}, {.position = {0.03f, 0, 0}}, {.position = {-0.01f, 0, 0}}};
