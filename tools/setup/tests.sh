@@ -24,8 +24,6 @@ run_tests() {
     build asan unit_tests
     unlock
     run_ctest asan
-    # Built by a test of the release run.
-    run_ctest no-twin
   fi
   echo "$passed passed, $failed failed, $skipped skipped"
   [ "$failed" = 0 ]
