@@ -14,8 +14,10 @@
 namespace merlin::sim {
 namespace {
 
+constexpr double kRetroGainMax = 1e4;  // brighter ones are typing errors
+constexpr double kRounding = 1e-12;    // of a sum of two decimal numbers
 constexpr std::array<std::string_view, 2> kFileKeys{"default", "materials"};
-constexpr std::array<std::string_view, 1> kMaterialKeys{"nir_albedo"};
+constexpr std::array<std::string_view, 4> kMaterialKeys{"nir_albedo", "mirror", "glass_transmission", "retro_gain"};
 
 // Collects every fault of one file, so that a person mends them in one go.
 class Reader {
@@ -75,15 +77,29 @@ class Reader {
       return material;
     }
     CheckKeys(node, kMaterialKeys);
-    const YAML::Node albedo = node["nir_albedo"];
-    const std::string what = fmt::format("nir_albedo of material '{}'", name);
-    if (!albedo) {
-      Fault(node, what + " is missing", "a number in [0, 1]");
-    } else if (!albedo.IsScalar() || !YAML::convert<double>::decode(albedo, material.nir_albedo) ||
-               !(material.nir_albedo >= 0.0 && material.nir_albedo <= 1.0)) {
-      Fault(albedo, what, "a number in [0, 1]", albedo.IsScalar() ? albedo.Scalar() : "no number");
+    const bool has_albedo = static_cast<bool>(node["nir_albedo"]);
+    if (!has_albedo) Fault(node, fmt::format("nir_albedo of material '{}' is missing", name), "a number in [0, 1]");
+    const bool albedo_read = has_albedo && ReadNumber(name, node, "nir_albedo", material.nir_albedo, 0.0, 1.0);
+    const bool mirror_read = ReadNumber(name, node, "mirror", material.mirror, 0.0, 1.0);
+    ReadNumber(name, node, "glass_transmission", material.glass_transmission, 0.0, 1.0);
+    ReadNumber(name, node, "retro_gain", material.retro_gain, 1.0, kRetroGainMax);
+    const double sum = material.nir_albedo + material.mirror;
+    if (albedo_read && mirror_read && sum > 1.0 + kRounding) {
+      Fault(node, fmt::format("nir_albedo + mirror of material '{}'", name), "at most 1", fmt::format("{:g}", sum));
     }
     return material;
+  }
+
+  // False if the key's number is none or outside its range; an absent key leaves the value.
+  bool ReadNumber(const std::string& name, const YAML::Node& material, const char* key, double& value, double min,
+                  double max) {
+    const YAML::Node node = material[key];
+    if (!node || (node.IsScalar() && YAML::convert<double>::decode(node, value) && value >= min && value <= max)) {
+      return true;
+    }
+    Fault(node, fmt::format("{} of material '{}'", key, name), fmt::format("a number in [{:g}, {:g}]", min, max),
+          node.IsScalar() ? node.Scalar() : "no number");
+    return false;
   }
 
   std::string file_;
@@ -105,14 +121,14 @@ Materials ReadMaterials(const std::filesystem::path& file) {
   }
 }
 
-std::vector<double> GeomAlbedos(const mjModel* model, const Materials& materials) {
-  std::vector<double> albedos;
+std::vector<Material> GeomMaterials(const mjModel* model, const Materials& materials) {
+  std::vector<Material> by_geom;
   for (int geom = 0; geom < model->ngeom; ++geom) {
     const int material = model->geom_matid[geom];
     const char* name = material < 0 ? "" : mj_id2name(model, mjOBJ_MATERIAL, material);
-    albedos.push_back(materials.Find(name == nullptr ? "" : name).nir_albedo);
+    by_geom.push_back(materials.Find(name == nullptr ? "" : name));
   }
-  return albedos;
+  return by_geom;
 }
 
 }  // namespace merlin::sim

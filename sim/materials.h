@@ -1,5 +1,5 @@
-// Optical properties by material name (models/materials.yaml). The near-infrared albedo is measured or listed per
-// material, never derived from a visible colour.
+// Optical properties by material name (models/materials.yaml), all in the near infrared (870 nm). They are measured or
+// listed per material, never derived from a visible colour.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -12,7 +12,12 @@
 namespace merlin::sim {
 
 struct Material {
-  double nir_albedo = 0.5;  // diffuse, at 870 nm, in [0, 1]
+  double nir_albedo = 0.5;          // diffuse reflectance, [0, 1]
+  double mirror = 0.0;              // specular reflectance, [0, 1]: mirrors, polished metal; nir_albedo + mirror <= 1
+  double glass_transmission = 0.0;  // of a pane at normal incidence, absorption only, without the Fresnel losses at its
+                                    // faces, [0, 1]; 0: no glass
+  double retro_gain = 1.0;          // times a Lambertian surface's brightness, seen from the lamp, [1, 10000]:
+                                    // retro-reflectors 100-1000
 };
 
 struct Materials {
@@ -25,12 +30,13 @@ struct Materials {
   }
 };
 
-// File: `default: {nir_albedo: 0.5}` (may be absent) and `materials: {white_wall: {nir_albedo: 0.8}, ...}`.
-// Throws InputError for what it cannot read, an unknown key (names the nearest), a name listed twice, or an albedo that
-// is missing or outside [0, 1]: all faults at once, a line each, with file and line.
+// File: `default: {nir_albedo: 0.5}` (may be absent) and `materials: {white_wall: {nir_albedo: 0.8}, ...}`; the keys of
+// a material are the fields above, all but nir_albedo may be absent. Throws InputError for what it cannot read, an
+// unknown key (names the nearest), a name listed twice, an albedo that is missing, or a number outside its range: all
+// faults at once, a line each, with file and line.
 Materials ReadMaterials(const std::filesystem::path& file);
 
-// Near-infrared albedo of every geom of the model, by its material's name.
-std::vector<double> GeomAlbedos(const mjModel* model, const Materials& materials);
+// What every geom of the model is made of, by its material's name; index: geom id.
+std::vector<Material> GeomMaterials(const mjModel* model, const Materials& materials);
 
 }  // namespace merlin::sim

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 #include <span>
 #include <stdexcept>
 
 #include "robot/types/error.h"
 #include "sim/car_body.h"
+#include "sim/room.h"
 #include "sim/spec.h"
 
 namespace merlin::sim {
@@ -18,35 +18,6 @@ namespace {
 constexpr double kParkingHeight_m = -50.0;  // of obstacles that are away
 constexpr double kFarthest_m = 1e5;         // of any geom from the origin
 constexpr double kFloorSearch_m = 0.5;      // above and below the start's height
-
-// MuJoCo's own handler prints, writes a file and exits.
-void OnMujocoMessage(const mjLogMessage* message) {
-  if (message->level == mjLOG_ERROR) throw std::runtime_error(std::string("MuJoCo: ") + message->subject);
-  // Warnings of a simulation are counted in mjData::warning, where Step looks.
-}
-
-// "file:12" where the message names a line of that file, else "file".
-std::string Where(const std::filesystem::path& file, const std::string& message) {
-  std::smatch line;
-  const std::regex pattern("line[ =:]*([0-9]+)", std::regex::icase);
-  return std::regex_search(message, line, pattern) ? fmt::format("{}:{}", file.string(), line[1].str()) : file.string();
-}
-
-std::string OneLine(std::string text) {
-  for (char& c : text)
-    if (c == '\n') c = ' ';
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
-}
-
-SpecPtr ParseRoom(const std::filesystem::path& room) {
-  std::error_code unreadable;
-  if (!std::filesystem::is_regular_file(room, unreadable)) throw InputError(room.string(), "no such room", "an MJCF file");
-  char error[1024] = "";
-  SpecPtr spec(mj_parseXML(room.c_str(), nullptr, error, sizeof error), mj_deleteSpec);
-  if (!spec) throw InputError(Where(room, error), "not a room (MJCF): " + OneLine(error));
-  return spec;
-}
 
 // The physics that the car was tuned with, and nothing of the room's that would change the car.
 void SetOptions(mjSpec* spec) {
@@ -63,49 +34,18 @@ void SetOptions(mjSpec* spec) {
   spec->compiler.discardvisual = 0;
 }
 
-// Whether a point lies inside a geom; meshes, height fields and planes are left to contact detection.
-bool Inside(const mjModel* model, const mjData* data, int geom, const mjtNum point_world[3]) {
-  mjtNum offset[3], p[3];
-  mju_sub3(offset, point_world, data->geom_xpos + 3 * geom);
-  mju_mulMatTVec3(p, data->geom_xmat + 9 * geom, offset);
-  const mjtNum* size = model->geom_size + 3 * geom;
-  switch (model->geom_type[geom]) {
-    case mjGEOM_BOX:
-      return std::abs(p[0]) <= size[0] && std::abs(p[1]) <= size[1] && std::abs(p[2]) <= size[2];
-    case mjGEOM_SPHERE:
-      return mju_norm3(p) <= size[0];
-    case mjGEOM_ELLIPSOID:
-      return std::hypot(p[0] / size[0], p[1] / size[1], p[2] / size[2]) <= 1.0;
-    case mjGEOM_CYLINDER:
-      return std::hypot(p[0], p[1]) <= size[0] && std::abs(p[2]) <= size[1];
-    case mjGEOM_CAPSULE:
-      return std::hypot(p[0], p[1], std::max(0.0, std::abs(p[2]) - size[1])) <= size[0];
-    default:
-      return false;
-  }
-}
-
-std::string GeomName(const mjModel* model, int geom) {
-  const char* name = mj_id2name(model, mjOBJ_GEOM, geom);
-  return name != nullptr ? name : fmt::format("geom {}", geom);
-}
-
 std::string ObstacleName(const std::string& name) { return "obstacle_" + name; }
 
 }  // namespace
 
 World::World(const WorldOptions& options) {
-  mju_setLogHandler(OnMujocoMessage);
-  SpecPtr spec = ParseRoom(options.room);
+  SpecPtr spec = ReadRoom(options.room, options.curtain_closed);
   SetOptions(spec.get());
   car_body::AddTo(spec.get(), options.car, options.T_world_start);
   drivetrain::AddTo(spec.get(), options.car);
   AddObstacles(spec.get(), options.obstacles);
   model_.reset(mj_compile(spec.get(), nullptr));
-  if (!model_) {
-    const std::string error = OneLine(mjs_getError(spec.get()));
-    throw InputError(Where(options.room, error), "the room with the car in it does not compile: " + error);
-  }
+  if (!model_) throw RoomError(options.room, "the room with the car in it does not compile", mjs_getError(spec.get()));
   data_.reset(mj_makeData(model_.get()));
   if (!data_) throw std::runtime_error("MuJoCo cannot make its data: out of memory");
   ReadNumerics(options.room.string());
@@ -219,7 +159,7 @@ void World::RefuseStartInContact(const WorldOptions& options) const {
     for (int other = 0; other < model_->ngeom; ++other) {
       const bool meets = (model_->geom_contype[part] & model_->geom_conaffinity[other]) != 0 ||
                          (model_->geom_contype[other] & model_->geom_conaffinity[part]) != 0;
-      if (meets && !is_car_[other] && Inside(model_.get(), data_.get(), other, data_->geom_xpos + 3 * part))
+      if (meets && !is_car_[other] && IsInside(model_.get(), data_.get(), other, data_->geom_xpos + 3 * part))
         refuse(GeomName(model_.get(), part), GeomName(model_.get(), other));
     }
   }
@@ -245,6 +185,12 @@ Pose World::T_world_base() const {
   pose.translation() = Eigen::Vector3d(q[0], q[1], q[2]);
   pose.linear() = Eigen::Quaterniond(q[3], q[4], q[5], q[6]).normalized().toRotationMatrix();
   return pose;
+}
+
+BodyMotion World::BaseMotion() const {
+  mjtNum velocity[6];  // angular, linear
+  mj_objectVelocity(model_.get(), data_.get(), mjOBJ_XBODY, base_body_, velocity, 0);
+  return {T_world_base(), {velocity[3], velocity[4], velocity[5]}, {velocity[0], velocity[1], velocity[2]}};
 }
 
 double World::Speed_m_s() const {

@@ -14,6 +14,7 @@
 #include "robot/types/se3.h"
 #include "robot/types/time.h"
 #include "sim/drivetrain.h"
+#include "sim/motion.h"
 
 namespace merlin::sim {
 
@@ -29,6 +30,7 @@ struct WorldOptions {
   CarDescription car;
   Pose T_world_start = Pose::Identity();  // of base_link; its height is taken from the floor there (within 0.5 m of z)
   std::vector<Obstacle> obstacles{};
+  bool curtain_closed = false;  // geoms named "curtain*" hang where the room has them (true), or are not there (false)
 };
 
 // Two geoms that touch, the first of them the car's. A wheel on a geom named "floor*" is no contact.
@@ -40,9 +42,9 @@ struct Touch {
 class World {
  public:
   // Throws InputError: a room that is missing or not MJCF (with its line where MuJoCo knows it), a missing mesh, a room
-  // without a geom named "floor*", a car that starts off the floor, in contact with anything else or inside it.
-  // Physics options (step, integrator, solver) are ours, whatever the room says. Errors of MuJoCo itself throw
-  // std::runtime_error from then on, in the whole process; it prints and logs nothing.
+  // without a geom named "floor*", a curtain to close where there is none, a car that starts off the floor, in contact
+  // with anything else or inside it. Physics options (step, integrator, solver) are ours, whatever the room says.
+  // Errors of MuJoCo itself throw std::runtime_error from then on, in the whole process; it prints and logs nothing.
   explicit World(const WorldOptions& options);
   ~World();
   World(const World&) = delete;
@@ -56,6 +58,7 @@ class World {
   void Step();
   Time Now() const;
   Pose T_world_base() const;
+  BodyMotion BaseMotion() const;
   double Speed_m_s() const;  // of the rear axle's middle along x, signed
   std::vector<Touch> CarTouches() const;
   bool IsCarGeom(int geom_id) const;

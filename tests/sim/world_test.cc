@@ -265,6 +265,79 @@ TEST(World, RefusesABadRoomWithFileAndLine) {
              {"used twice", "chassis_collision_0"});
 }
 
+std::unique_ptr<World> WithCurtain(const std::filesystem::path& room, bool closed) {
+  return std::make_unique<World>(WorldOptions{.room = room, .car = Merlin(), .curtain_closed = closed});
+}
+
+constexpr char kRoom7x10[] = MERLIN_SOURCE_DIR "/models/rooms/room_7x10.xml";
+
+// The geom that a ray meets first, and how far away.
+struct Met {
+  std::string geom;
+  double range_m = -1.0;
+};
+
+Met Look(const World& world, const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
+  constexpr mjtByte kSeenGroups[mjNGROUP] = {1, 1, 1, 0, 0, 0};
+  const Eigen::Vector3d unit = direction.normalized();
+  int geom = -1;
+  const double range_m =
+      mj_ray(world.model(), world.data(), from.data(), unit.data(), kSeenGroups, 1, -1, &geom, nullptr);
+  const char* name = geom < 0 ? nullptr : mj_id2name(world.model(), mjOBJ_GEOM, geom);
+  return {name == nullptr ? "" : name, range_m};
+}
+
+TEST(World, TakesAnOpenCurtainOutAndHangsAClosedOne) {
+  const TemporaryFile file("room.xml", Room(std::string(kPlane) + R"(
+    <geom name="curtain" type="box" pos="2 0 1" size=".01 1 1"/>
+    <body pos="3 0 1"><geom name="curtain_2" type="box" size=".01 1 1"/><geom name="old_curtain" size=".1"/></body>)"));
+  const auto open = WithCurtain(file.path(), false), closed = WithCurtain(file.path(), true);
+  const auto has = [](const World& world, const char* name) {
+    return mj_name2id(world.model(), mjOBJ_GEOM, name) >= 0;
+  };
+  for (const char* name : {"curtain", "curtain_2"}) {
+    EXPECT_FALSE(has(*open, name)) << name;
+    EXPECT_TRUE(has(*closed, name)) << name;
+  }
+  EXPECT_TRUE(has(*open, "old_curtain"));
+  EXPECT_EQ(closed->model()->ngeom, open->model()->ngeom + 2);
+}
+
+TEST(World, RefusesToCloseACurtainThatIsNotThere) {
+  const TemporaryFile file("room.xml", Room(kPlane));
+  EXPECT_EQ(ErrorOf([&] { WithCurtain(file.path(), false); }), "");
+  ExpectSays(ErrorOf([&] { WithCurtain(file.path(), true); }), {"room.xml", "no curtain to close", "curtain*"});
+}
+
+TEST(Room7x10, StandsOnItsPlan) {
+  const auto world = WithCurtain(kRoom7x10, false);
+  const std::vector<Eigen::Vector2d>& plan = world->plan_xy_m();
+  ASSERT_EQ(plan.size(), 4u);
+  const double expected_m[] = {3.5, 5.0, 3.5, 5.0};  // half of 7.00 and 10.00 m
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d edge = (plan[(i + 1) % 4] - plan[i]).normalized();
+    const Eigen::Vector3d outward(edge.y(), -edge.x(), 0.0);  // the outline runs counter-clockwise
+    EXPECT_NEAR(outward.head<2>().dot(plan[i]), expected_m[i], 1e-4);
+    // Over the furniture and the windows.
+    EXPECT_NEAR(Look(*world, {0.0, 0.0, 2.6}, outward).range_m, expected_m[i], 1e-4) << i;
+  }
+}
+
+TEST(Room7x10, CurtainHidesEveryPane) {
+  const auto open = WithCurtain(kRoom7x10, false), closed = WithCurtain(kRoom7x10, true);
+  const Eigen::Vector3d eye(0.0, 0.0, 1.6);
+  int panes = 0;
+  for (int geom = 0; geom < open->model()->ngeom; ++geom) {
+    const char* name = mj_id2name(open->model(), mjOBJ_GEOM, geom);
+    if (name == nullptr || !std::string_view(name).starts_with("window")) continue;
+    const Eigen::Vector3d towards = Eigen::Vector3d::Map(open->data()->geom_xpos + 3 * geom) - eye;
+    EXPECT_EQ(Look(*open, eye, towards).geom, name);
+    EXPECT_TRUE(Look(*closed, eye, towards).geom.starts_with("curtain")) << name;
+    ++panes;
+  }
+  EXPECT_EQ(panes, 8);
+}
+
 TEST(World, StopsLoudlyWhenTheStateIsBad) {
   const auto world = EmptyWorld();
   world->data()->qvel[0] = std::numeric_limits<double>::quiet_NaN();  // data is const, what it points to is not

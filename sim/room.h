@@ -1,0 +1,31 @@
+// A room's MJCF as MuJoCo parses it, with MuJoCo's troubles turned into ours.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <filesystem>
+#include <string>
+
+#include "robot/types/error.h"
+#include "sim/spec.h"
+
+namespace merlin::sim {
+
+// From here on errors of MuJoCo itself throw std::runtime_error, in the whole process; it prints and logs nothing.
+void SilenceMujoco();
+
+// The error of a room that MuJoCo refuses, with its line where MuJoCo's message knows it.
+InputError RoomError(const std::filesystem::path& room, const std::string& what, const std::string& mujoco_message);
+
+// Parsed, not compiled. Geoms named "curtain*" hang where the room has them, or leave nothing behind: neither camera
+// nor sun meets an open curtain. Silences MuJoCo. Throws InputError: no such file, no MJCF, a curtain to close where
+// there is none.
+SpecPtr ReadRoom(const std::filesystem::path& room, bool curtain_closed);
+
+// "wall_north", or "geom 12" for one without a name.
+std::string GeomName(const mjModel* model, int geom);
+
+// Whether a point lies in a sphere, capsule, cylinder, ellipsoid or box, standing where data has it; false for others.
+bool IsInside(const mjModel* model, const mjData* data, int geom, const mjtNum point_world[3]);
+
+}  // namespace merlin::sim
