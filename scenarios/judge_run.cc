@@ -44,9 +44,9 @@ Trajectory ToTrajectory(const std::vector<MapPose>& poses) {
 
 TrueRange TrueRangeOf(const sim::RayScene& scene) {
   return [&scene](const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world) -> double {
-    const Eigen::Vector3f direction = direction_world.cast<float>();
+    const sim::Ray ray{.origin = origin_world.cast<float>(), .direction = direction_world.cast<float>()};
     sim::RayHit hit;
-    scene.Cast(origin_world, std::span(&direction, 1), std::span(&hit, 1));
+    scene.Cast(std::span(&ray, 1), std::span(&hit, 1));
     return hit.range_m < 0.0f ? HUGE_VAL : hit.range_m;
   };
 }
@@ -71,7 +71,7 @@ void Evidence::Add(const DepthFrame& frame) {
   depth.Add(frame.stamp.count());
   depth.Add(std::span<const float>(frame.range_m));
   depth.Add(std::span<const float>(frame.amplitude));
-  depth.Add(std::span<const float>(frame.intensity));
+  depth.Add(std::span<const std::uint8_t>(frame.intensity));
   depth.Add(std::span<const std::uint8_t>(frame.flags));
 }
 

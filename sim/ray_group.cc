@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "robot/types/error.h"
 
@@ -125,30 +127,30 @@ Eigen::Vector3d HalfEdges(const CurvedGeom& curved) {
   }
 }
 
-std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& skip_body) {
+std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& skip_body,
+                                const std::vector<bool>& is_pane) {
   const std::vector<Pose> reference = ReferencePoses(model);
   std::deque<RayGroup> groups;
-  std::vector<RayGroup*> group_of_body(static_cast<std::size_t>(model->nbody), nullptr);  // [0]: all statics
+  std::map<std::pair<int, bool>, RayGroup*> group_of;  // body (0: all statics), panes or not
   for (int geom = 0; geom < model->ngeom; ++geom) {
     const int geom_body = model->geom_bodyid[geom];
     if (skip_body[static_cast<std::size_t>(geom_body)] || !IsVisible(model, geom)) continue;
     const int body = IsStatic(model, geom_body) ? 0 : geom_body;
+    const bool pane = !is_pane.empty() && is_pane[static_cast<std::size_t>(geom)];
     Pose T_body_geom = ToPose(model->geom_pos + 3 * geom, model->geom_quat + 4 * geom);
     if (body == 0) T_body_geom = reference[static_cast<std::size_t>(geom_body)] * T_body_geom;
 
-    if (model->geom_type[geom] == mjGEOM_PLANE) {
-      RayGroup& group = groups.emplace_back();
-      group.body = body;
-      group.T_body_group = T_body_geom;
-      AddGeom(group, model, geom, Pose::Identity());
-      continue;
+    const bool plane = model->geom_type[geom] == mjGEOM_PLANE;
+    RayGroup*& of_body = group_of[{body, pane}];
+    if (plane || of_body == nullptr) {
+      RayGroup& made = groups.emplace_back();
+      made.body = body;
+      made.panes = pane;
+      if (!plane) of_body = &made;
     }
-    RayGroup*& group = group_of_body[static_cast<std::size_t>(body)];
-    if (group == nullptr) {
-      group = &groups.emplace_back();
-      group->body = body;
-    }
-    AddGeom(*group, model, geom, T_body_geom);
+    RayGroup& group = plane ? groups.back() : *of_body;
+    if (plane) group.T_body_group = T_body_geom;
+    AddGeom(group, model, geom, plane ? Pose::Identity() : T_body_geom);
   }
   return groups;
 }

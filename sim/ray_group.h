@@ -30,6 +30,7 @@ struct RayGroup {
   int body = 0;
   Pose T_body_group = Pose::Identity();
   bool one_sided = false;  // a plane: MuJoCo's are seen from above only
+  bool panes = false;      // geoms that can be looked through
 
   std::vector<Eigen::Vector3f> vertices;
   std::vector<std::array<unsigned, 3>> triangles;
@@ -42,8 +43,10 @@ Pose ToPose(const mjtNum* position, const mjtNum* quaternion_wxyz);
 // T_world_body of every body before anything has moved.
 std::vector<Pose> ReferencePoses(const mjModel* model);
 
-// One group of all statics, one for each body that moves, one for each plane; without the geoms of bodies for which
-// skip_body is true. Throws InputError for a geom of a type that is neither flat nor curved (height field, SDF).
-std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& skip_body);
+// One group of all statics, one for each body that moves, the same again for panes, one for each plane; without the
+// geoms of bodies for which skip_body is true. is_pane: by geom, empty for none. Throws InputError for a geom of a type
+// that is neither flat nor curved (height field, SDF).
+std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& skip_body,
+                                const std::vector<bool>& is_pane);
 
 }  // namespace merlin::sim

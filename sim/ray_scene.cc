@@ -2,9 +2,12 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <deque>
+#include <limits>
+#include <utility>
 
 #include "robot/types/error.h"
 #include "sim/ray_group.h"
@@ -16,6 +19,8 @@ namespace {
 // same bits on every machine that has it.
 constexpr char kDeviceConfig[] = "threads=1,set_affinity=0,max_isa=avx2";
 constexpr float kBoundsMargin_m = 1e-4f;  // a curved geom's box must hold it in float, too
+
+constexpr unsigned kOpaqueMask = 1, kPaneMask = 2;
 
 enum GeometryId : unsigned { kTriangles = 0, kCurved = 1 };  // of the scene of a group
 
@@ -37,28 +42,46 @@ void CurvedBounds(const RTCBoundsFunctionArguments* args) {
   *args->bounds_o = {low.x(), low.y(), low.z(), 0.0f, high.x(), high.y(), high.z(), 0.0f};
 }
 
-// For single rays: args->N is 1.
-void IntersectCurved(const RTCIntersectFunctionNArguments* args) {
-  const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];
-  auto& [ray, hit] = *reinterpret_cast<RTCRayHit*>(args->rayhit);
-  const mjtNum origin[3] = {ray.org_x, ray.org_y, ray.org_z};
-  const mjtNum direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
-  mjtNum normal[3];
+// Range along the ray, or a negative number.
+float HitCurved(const CurvedGeom& curved, RTCRayN* rays, unsigned n, unsigned i, mjtNum normal[3]) {
+  const mjtNum origin[3] = {RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)};
+  const mjtNum direction[3] = {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)};
   const float range = static_cast<float>(
       mju_rayGeom(curved.position, curved.rotation, curved.size, origin, direction, curved.type, normal));
-  if (!args->valid[0] || range < ray.tnear || range > ray.tfar) return;  // -1: missed
-  ray.tfar = range;
-  hit.Ng_x = static_cast<float>(normal[0]);
-  hit.Ng_y = static_cast<float>(normal[1]);
-  hit.Ng_z = static_cast<float>(normal[2]);
-  hit.primID = args->primID;
-  hit.geomID = args->geomID;
-  hit.instID[0] = args->context->instID[0];
+  return range >= RTCRayN_tnear(rays, n, i) && range <= RTCRayN_tfar(rays, n, i) ? range : -1.0f;
+}
+
+void IntersectCurved(const RTCIntersectFunctionNArguments* args) {
+  const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned i = 0; i < args->N; ++i) {
+    mjtNum normal[3];
+    const float range = args->valid[i] ? HitCurved(curved, rays, args->N, i, normal) : -1.0f;
+    if (range < 0.0f) continue;
+    RTCRayN_tfar(rays, args->N, i) = range;
+    RTCHitN_Ng_x(hits, args->N, i) = static_cast<float>(normal[0]);
+    RTCHitN_Ng_y(hits, args->N, i) = static_cast<float>(normal[1]);
+    RTCHitN_Ng_z(hits, args->N, i) = static_cast<float>(normal[2]);
+    RTCHitN_primID(hits, args->N, i) = args->primID;
+    RTCHitN_geomID(hits, args->N, i) = args->geomID;
+    RTCHitN_instID(hits, args->N, i, 0) = args->context->instID[0];
+  }
+}
+
+void OccludeByCurved(const RTCOccludedFunctionNArguments* args) {
+  const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];
+  for (unsigned i = 0; i < args->N; ++i) {
+    mjtNum normal[3];
+    if (args->valid[i] && HitCurved(curved, args->ray, args->N, i, normal) >= 0.0f)
+      RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
+  }
 }
 
 // Rejects hits of a plane from below; the ray is in the group's frame, which is the plane's.
 void SeenFromAboveOnly(const RTCFilterFunctionNArguments* args) {
-  if (RTCRayN_dir_z(args->ray, args->N, 0) >= 0.0f) args->valid[0] = 0;
+  for (unsigned i = 0; i < args->N; ++i)
+    if (RTCRayN_dir_z(args->ray, args->N, i) >= 0.0f) args->valid[i] = 0;
 }
 
 Scene NewScene(RTCDevice device, RTCSceneFlags flags) {
@@ -75,7 +98,10 @@ void AttachTriangles(RTCDevice device, RTCScene scene, const RayGroup& group) {
                                             sizeof(group.triangles[0]), group.triangles.size());
   std::memcpy(vertices, group.vertices.data(), group.vertices.size() * sizeof(group.vertices[0]));
   std::memcpy(triangles, group.triangles.data(), group.triangles.size() * sizeof(group.triangles[0]));
-  if (group.one_sided) rtcSetGeometryIntersectFilterFunction(geometry.get(), SeenFromAboveOnly);
+  if (group.one_sided) {
+    rtcSetGeometryIntersectFilterFunction(geometry.get(), SeenFromAboveOnly);
+    rtcSetGeometryOccludedFilterFunction(geometry.get(), SeenFromAboveOnly);
+  }
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometryByID(scene, geometry.get(), kTriangles);
 }
@@ -86,6 +112,7 @@ void AttachCurved(RTCDevice device, RTCScene scene, const RayGroup& group) {
   rtcSetGeometryUserData(geometry.get(), const_cast<RayGroup*>(&group));  // read only
   rtcSetGeometryBoundsFunction(geometry.get(), CurvedBounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry.get(), IntersectCurved);
+  rtcSetGeometryOccludedFunction(geometry.get(), OccludeByCurved);
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometryByID(scene, geometry.get(), kCurved);
 }
@@ -96,6 +123,8 @@ struct Instance {
   Scene scene;
   Geometry geometry;
   Eigen::Matrix3f R_world_group = Eigen::Matrix3f::Identity();
+  Eigen::Matrix4f T_world_group_last = Eigen::Matrix4f::Identity();
+  bool placed = false;
 
   Instance(RTCDevice device, const RayGroup& of)
       : group(&of),
@@ -105,16 +134,56 @@ struct Instance {
     if (!of.curved.empty()) AttachCurved(device, scene.get(), of);
     rtcCommitScene(scene.get());
     rtcSetGeometryInstancedScene(geometry.get(), scene.get());
-    Place(Pose::Identity());
+    rtcSetGeometryMask(geometry.get(), of.panes ? kPaneMask : kOpaqueMask);
   }
 
-  void Place(const Pose& T_world_body) {
+  // False: it stands there already.
+  bool Place(const Pose& T_world_body) {
     const Eigen::Matrix4f T_world_group = (T_world_body * group->T_body_group).matrix().cast<float>();
+    if (placed && T_world_group == T_world_group_last) return false;
+    placed = true;
+    T_world_group_last = T_world_group;
     R_world_group = T_world_group.topLeftCorner<3, 3>();
     rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, T_world_group.data());
     rtcCommitGeometry(geometry.get());
+    return true;
   }
 };
+
+constexpr int kPacket = 8;
+
+// Eight rays as Embree takes them; lanes beyond count repeat the first and are not valid.
+template <class Packet>
+void Fill(Packet& ray, std::span<const Ray> rays, Panes panes) {
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    const Ray& from = rays[i < rays.size() ? i : 0];
+    ray.org_x[i] = from.origin.x();
+    ray.org_y[i] = from.origin.y();
+    ray.org_z[i] = from.origin.z();
+    ray.dir_x[i] = from.direction.x();
+    ray.dir_y[i] = from.direction.y();
+    ray.dir_z[i] = from.direction.z();
+    ray.tnear[i] = 0.0f;
+    ray.tfar[i] = from.max_range_m;
+    ray.time[i] = 0.0f;
+    ray.mask[i] = panes == Panes::kSeen ? kOpaqueMask | kPaneMask : kOpaqueMask;
+    ray.id[i] = ray.flags[i] = 0;
+  }
+}
+
+struct Lanes {
+  explicit Lanes(std::size_t count) {
+    for (std::size_t i = 0; i < kPacket; ++i) valid[i] = i < count ? -1 : 0;
+  }
+  alignas(32) int valid[kPacket];
+};
+
+RTCIntersectContext CoherentContext() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
+}
 
 }  // namespace
 
@@ -122,9 +191,12 @@ struct RayScene::Impl {
   std::deque<RayGroup> groups;  // Embree keeps their addresses
   Device device{rtcNewDevice(kDeviceConfig)};
   std::vector<Instance> instances;  // [instance id]
+  std::vector<bool> moves;          // [geom id]
   Scene top;
+  bool fresh = true;  // never committed
 
-  Impl(const mjModel* model, const std::vector<bool>& skip_body) : groups(GroupGeoms(model, skip_body)) {
+  Impl(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane)
+      : groups(GroupGeoms(model, skip_body, is_pane)) {
     if (!device) throw MachineError("ray casting: Embree cannot be started on this machine");
     top = NewScene(device.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
     for (const RayGroup& group : groups) {
@@ -132,6 +204,7 @@ struct RayScene::Impl {
       instances.emplace_back(device.get(), group);
       rtcAttachGeometryByID(top.get(), instances.back().geometry.get(), id);
     }
+    for (int geom = 0; geom < model->ngeom; ++geom) moves.push_back(model->body_weldid[model->geom_bodyid[geom]] != 0);
   }
 
   void Commit() {
@@ -141,59 +214,61 @@ struct RayScene::Impl {
     }
   }
 
-  RayHit ReadHit(const RTCRayHit& ray, const Eigen::Vector3f& direction_world) const {
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    const Instance& instance = instances[ray.hit.instID[0]];
+  RayHit ReadHit(const RTCRayHit8& packet, std::size_t i, const Eigen::Vector3f& direction_world) const {
+    const RTCHit8& hit = packet.hit;
+    if (hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) return {};
+    const Instance& instance = instances[hit.instID[0][i]];
     const RayGroup& group = *instance.group;
-    const unsigned primitive = ray.hit.primID;
-    const Eigen::Vector3f normal_group(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
+    const Eigen::Vector3f normal_group(hit.Ng_x[i], hit.Ng_y[i], hit.Ng_z[i]);
     const Eigen::Vector3f normal = (instance.R_world_group * normal_group).normalized();
-    return {.range_m = ray.ray.tfar,
-            .geom = ray.hit.geomID == kTriangles ? group.geom_of_triangle[primitive] : group.curved[primitive].geom,
-            .normal = normal.dot(direction_world) > 0.0f ? Eigen::Vector3f(-normal) : normal};
+    return {
+        .range_m = packet.ray.tfar[i],
+        .geom = hit.geomID[i] == kTriangles ? group.geom_of_triangle[hit.primID[i]] : group.curved[hit.primID[i]].geom,
+        .normal = normal.dot(direction_world) > 0.0f ? Eigen::Vector3f(-normal) : normal};
   }
 };
 
-RayScene::RayScene(const mjModel* model, const std::vector<bool>& skip_body)
-    : impl_(std::make_unique<Impl>(model, skip_body)) {
-  Update({ReferencePoses(model)});
+RayScene::RayScene(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane)
+    : impl_(std::make_unique<Impl>(model, skip_body, is_pane)) {
+  Update(AtRest(model));
 }
 
 RayScene::~RayScene() = default;
 
-BodyPoses RayScene::Snapshot(const mjModel* model, const mjData* data) {
-  BodyPoses poses;
-  for (int b = 0; b < model->nbody; ++b) poses.T_world_body.push_back(ToPose(data->xpos + 3 * b, data->xquat + 4 * b));
-  return poses;
+bool RayScene::Moves(int geom) const { return impl_->moves[static_cast<std::size_t>(geom)]; }
+
+void RayScene::Update(const BodyMotions& bodies, double dt_s) {
+  bool moved = std::exchange(impl_->fresh, false);
+  for (Instance& instance : impl_->instances)
+    moved |= instance.Place(bodies[static_cast<std::size_t>(instance.group->body)].At(dt_s));
+  if (moved) impl_->Commit();
 }
 
-void RayScene::Update(const BodyPoses& poses) {
-  for (Instance& instance : impl_->instances) {
-    instance.Place(poses.T_world_body[static_cast<std::size_t>(instance.group->body)]);
+void RayScene::Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes) const {
+  assert(rays.size() == hits.size());
+  RTCIntersectContext context = CoherentContext();
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const std::span<const Ray> some = rays.subspan(first, std::min<std::size_t>(kPacket, rays.size() - first));
+    const Lanes lanes(some.size());
+    RTCRayHit8 packet;
+    Fill(packet.ray, some, panes);
+    std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
+    rtcIntersect8(lanes.valid, impl_->top.get(), &context, &packet);
+    for (std::size_t i = 0; i < some.size(); ++i) hits[first + i] = impl_->ReadHit(packet, i, some[i].direction);
   }
-  impl_->Commit();
 }
 
-void RayScene::Cast(const Eigen::Vector3d& origin_world, std::span<const Eigen::Vector3f> directions_world,
-                    std::span<RayHit> hits, float max_range_m) const {
-  assert(directions_world.size() == hits.size());
-  const Eigen::Vector3f origin = origin_world.cast<float>();
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    const Eigen::Vector3f& direction = directions_world[i];
-    RTCRayHit ray{};
-    ray.ray.org_x = origin.x();
-    ray.ray.org_y = origin.y();
-    ray.ray.org_z = origin.z();
-    ray.ray.dir_x = direction.x();
-    ray.ray.dir_y = direction.y();
-    ray.ray.dir_z = direction.z();
-    ray.ray.tfar = max_range_m;
-    ray.ray.mask = ~0u;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(impl_->top.get(), &context, &ray);
-    hits[i] = impl_->ReadHit(ray, direction);
+void RayScene::Occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Panes panes) const {
+  assert(rays.size() == blocked.size());
+  RTCIntersectContext context = CoherentContext();
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const std::span<const Ray> some = rays.subspan(first, std::min<std::size_t>(kPacket, rays.size() - first));
+    const Lanes lanes(some.size());
+    RTCRay8 packet;
+    Fill(packet, some, panes);
+    rtcOccluded8(lanes.valid, impl_->top.get(), &context, &packet);
+    for (std::size_t i = 0; i < some.size(); ++i) blocked[first + i] = packet.tfar[i] < 0.0f;
   }
 }
 

@@ -6,11 +6,12 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "robot/types/se3.h"
+#include "sim/motion.h"
 
 namespace merlin::sim {
 
@@ -20,28 +21,33 @@ struct RayHit {
   Eigen::Vector3f normal{0, 0, 0};  // unit, world frame, facing the ray's origin
 };
 
-// Where every body stands, taken at exposure: rays may be traced later, beside the physics.
-struct BodyPoses {
-  std::vector<Pose> T_world_body;
+struct Ray {
+  Eigen::Vector3f origin{0, 0, 0};     // world
+  Eigen::Vector3f direction{1, 0, 0};  // unit, world
+  float max_range_m = 100.0f;          // beyond it nothing is seen
 };
+
+enum class Panes { kSeen, kLookedThrough };
 
 class RayScene {
  public:
   // Every body where the model puts it. Throws InputError for a geom it cannot see (height field, signed distance
-  // field), MachineError when Embree does not start. Geoms of the bodies for which skip_body(body_id) is true are left
-  // out (the camera's own car).
-  RayScene(const mjModel* model, const std::vector<bool>& skip_body);
+  // field), MachineError when Embree does not start. Left out are the geoms of the bodies for which skip_body(body_id)
+  // is true (the camera's own car). Geoms for which is_pane(geom_id) is true can be looked through; empty: none.
+  RayScene(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane = {});
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  static BodyPoses Snapshot(const mjModel* model, const mjData* data);
-  // Moves the instances. Not to be called while rays are traced.
-  void Update(const BodyPoses& poses);
-  // One origin, many unit directions (world frame); hits has the same size. max_range_m: beyond it nothing is seen.
-  // A hit depends on its ray alone, to the bit, not on the others of the call: rays may be split between threads.
-  void Cast(const Eigen::Vector3d& origin_world, std::span<const Eigen::Vector3f> directions_world,
-            std::span<RayHit> hits, float max_range_m = 100.0f) const;
+  // Moves the bodies to where they are dt_s later. Not to be called while rays are traced.
+  void Update(const BodyMotions& bodies, double dt_s = 0.0);
+  // hits has the size of rays. Rays are traced in packets of eight in the order given: the same call gives the same
+  // bits, so a caller who splits rays between threads must not let the number of threads decide what one call holds.
+  void Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes = Panes::kSeen) const;
+  // blocked[i] = 1 where ray i meets anything before its max_range_m.
+  void Occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Panes panes) const;
+  // Does this geom move against the world?
+  bool Moves(int geom) const;
 
  private:
   struct Impl;

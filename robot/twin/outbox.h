@@ -17,13 +17,17 @@ class Outbox {
  public:
   explicit Outbox(Duration latency) : latency_(latency) {}
 
-  void Put(Time stamp, std::future<Measurement> measurement) {
-    waiting_.push_back({stamp, std::move(measurement)});
+  // out: when it may be taken, where that is not its stamp plus the latency.
+  void Put(Time stamp, Time out, std::future<Measurement> measurement) {
+    waiting_.push_back({out, std::move(measurement)});
     // Of those that could have been taken a slow reader keeps the newest few; what is on its way is not his fault.
-    while (waiting_.size() > kCapacity && waiting_[kCapacity].stamp + latency_ <= stamp) {
+    while (waiting_.size() > kCapacity && waiting_[kCapacity].out <= stamp) {
       waiting_.pop_front();
       ++status_.missed;
     }
+  }
+  void Put(Time stamp, std::future<Measurement> measurement) {
+    Put(stamp, stamp + latency_, std::move(measurement));
   }
   void Put(Time stamp, Measurement measurement) {
     std::promise<Measurement> promise;
@@ -31,7 +35,7 @@ class Outbox {
     Put(stamp, promise.get_future());
   }
   std::optional<Measurement> Take(Time now) {
-    if (waiting_.empty() || waiting_.front().stamp + latency_ > now) return std::nullopt;
+    if (waiting_.empty() || waiting_.front().out > now) return std::nullopt;
     Measurement measurement = waiting_.front().measurement.get();
     waiting_.pop_front();
     ++status_.delivered;
@@ -42,7 +46,7 @@ class Outbox {
  private:
   static constexpr std::size_t kCapacity = 16;
   struct Waiting {
-    Time stamp;
+    Time out;
     std::future<Measurement> measurement;
   };
   Duration latency_;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,22 @@ enum DepthFlag : std::uint8_t {
 };
 
 struct DepthSettings {
-  double integration_s = 1e-3;  // of one of the four sub-frames
-  double frequency_hz = 20e6;   // modulation
+  double integration_s = 1e-3;       // of one sub-frame; four of them (eight with two frequencies) are one frame
+  double frequency_hz = 20e6;        // modulation
+  double second_frequency_hz = 0.0;  // 0: none; else four more sub-frames, and a range that wraps later
+  bool post_processing = false;      // the maker's own: pixels of low amplitude become invalid, a 3x3 median of range
+  bool phase_images = false;         // deliver the taps, too
+
+  int sub_frames() const { return second_frequency_hz > 0.0 ? 8 : 4; }
 };
 
 // Range at which the phase wraps: c / 2f. 7.495 m at 20 MHz.
 inline double UnambiguousRange_m(double frequency_hz) { return kSpeedOfLight_m_s / (2.0 * frequency_hz); }
+// With two frequencies: that of their greatest common divisor. 14.990 m at 20 and 30 MHz.
+inline double UnambiguousRange_m(const DepthSettings& settings) {
+  const auto hz = [](double frequency_hz) { return static_cast<long long>(std::llround(frequency_hz)); };
+  return UnambiguousRange_m(static_cast<double>(std::gcd(hz(settings.frequency_hz), hz(settings.second_frequency_hz))));
+}
 
 // The data sheet of one model; values and their origin stand in models/cameras/<name>.yaml.
 struct DepthCameraSheet {
@@ -43,6 +54,7 @@ struct DepthCameraSheet {
   double contrast_corner_hz = 0.0;      // f_c of C(f) = C0 / sqrt(1 + (f / f_c)^2)
   double read_noise_e = 0.0;            // per tap, one sigma
   double full_well_e = 0.0;             // per tap
+  bool sbi = false;                     // has suppression of background illumination
   double readout_s = 0.0;               // between two sub-frames
   double low_signal_amplitude_e = 0.0;  // below it a pixel is flagged kLowSignal
   double integration_min_s = 0.0;
@@ -57,22 +69,17 @@ struct DepthCameraSheet {
   double LampAmplitude_e_m2(const DepthSettings& settings) const {
     return Contrast(settings.frequency_hz) * signal_e_m2_per_us * settings.integration_s * 1e6;
   }
+  // From the first sub-frame's begin to the last one's end.
+  double ExposureSpan_s(const DepthSettings& settings) const {
+    return settings.sub_frames() * settings.integration_s + (settings.sub_frames() - 1) * readout_s;
+  }
 };
 
 // Throws InputError for settings the sheet does not list as valid.
-inline void CheckSettings(const DepthCameraSheet& sheet, const DepthSettings& settings) {
-  if (!(settings.integration_s >= sheet.integration_min_s && settings.integration_s <= sheet.integration_max_s))
-    throw InputError(sheet.name, "invalid integration time",
-                     std::to_string(sheet.integration_min_s * 1e6) + " to " + std::to_string(sheet.integration_max_s * 1e6) + " us",
-                     std::to_string(settings.integration_s * 1e6) + " us");
-  std::string valid;
-  for (const double frequency_hz : sheet.frequencies_hz) {
-    if (settings.frequency_hz == frequency_hz) return;
-    valid += (valid.empty() ? "" : " or ") + std::to_string(frequency_hz * 1e-6);
-  }
-  throw InputError(sheet.name, "invalid modulation frequency", valid + " MHz",
-                   std::to_string(settings.frequency_hz * 1e-6) + " MHz");
-}
+void CheckSettings(const DepthCameraSheet& sheet, const DepthSettings& settings);
+
+// The valid settings that are closest to these. Throws InputError where closeness has no meaning (NaN).
+DepthSettings NearestSettings(const DepthCameraSheet& sheet, const DepthSettings& settings);
 
 // One measurement. Images are row-major, width x height, upper left first, as the camera sees.
 struct DepthFrame {
@@ -81,10 +88,11 @@ struct DepthFrame {
   DepthSettings settings;
   int width = 0;
   int height = 0;
-  std::vector<float> range_m;       // along the ray, [0, c / 2f); what lies beyond wraps
-  std::vector<float> amplitude;     // electrons: sqrt(I^2 + Q^2) / 2 = C N_s
-  std::vector<float> intensity;     // electrons: the sum of the eight taps / 8: half of what a pixel collects in a sub-frame
-  std::vector<std::uint8_t> flags;  // DepthFlag bits
+  std::vector<float> range_m;           // along the ray, [0, UnambiguousRange_m(settings)); what lies beyond wraps
+  std::vector<float> amplitude;         // electrons: sqrt(I^2 + Q^2) / 2 = C N_s; with two frequencies the first one's
+  std::vector<std::uint8_t> intensity;  // mean of a sub-frame's taps, 255 at the full well
+  std::vector<std::uint8_t> flags;      // DepthFlag bits
+  std::vector<float> phase_images;      // taps [e], sub-frame by sub-frame, image of A then of B; empty unless asked for
 
   std::size_t size() const { return range_m.size(); }
 };

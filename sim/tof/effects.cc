@@ -1,22 +1,36 @@
+#include "sim/tof/effects.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <string_view>
+#include <vector>
 
 #include "robot/types/error.h"
 #include "robot/types/nearest_name.h"
-#include "sim/tof/tof_camera.h"
 
 namespace merlin::sim {
 namespace {
 
-struct Effect {
-  std::string_view name;
-  bool TofEffects::*on;
+constexpr std::array kEffects{
+    TofEffectName{"noise", &TofEffects::noise},
+    TofEffectName{"adc", &TofEffects::adc},
+    TofEffectName{"wiggling", &TofEffects::wiggling},
+    TofEffectName{"saturation", &TofEffects::saturation},
+    TofEffectName{"sbi", &TofEffects::sbi},
+    TofEffectName{"sunlight", &TofEffects::sunlight},
+    TofEffectName{"intensity", &TofEffects::intensity},
+    TofEffectName{"flying", &TofEffects::flying},
+    TofEffectName{"motion", &TofEffects::motion},
+    TofEffectName{"multipath", &TofEffects::multipath},
+    TofEffectName{"glass", &TofEffects::glass},
+    TofEffectName{"specular", &TofEffects::specular},
+    TofEffectName{"scatter", &TofEffects::scatter},
+    TofEffectName{"temperature", &TofEffects::temperature},
+    TofEffectName{"fixed_pattern", &TofEffects::fixed_pattern},
+    TofEffectName{"dead_pixels", &TofEffects::dead_pixels},
+    TofEffectName{"lamp", &TofEffects::lamp},
 };
-constexpr std::array kEffects{Effect{"noise", &TofEffects::noise}, Effect{"saturation", &TofEffects::saturation}};
-constexpr TofEffects kIdeal{.noise = false, .saturation = false};
 
 std::string_view Trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
@@ -24,8 +38,8 @@ std::string_view Trim(std::string_view text) {
 }
 
 [[noreturn]] void ThrowUnknown(std::string_view name) {
-  std::vector<std::string_view> known{"all", "ideal"};
-  for (const Effect& effect : kEffects) known.push_back(effect.name);
+  std::vector<std::string_view> known{"all", "raw", "ideal"};
+  for (const TofEffectName& effect : kEffects) known.push_back(effect.name);
   throw InputError("effects", fmt::format("unknown effect '{}'", name),
                    fmt::format("'{}' (known: {})", NearestName(name, known), fmt::join(known, ", ")));
 }
@@ -33,13 +47,15 @@ std::string_view Trim(std::string_view text) {
 void Apply(std::string_view word, TofEffects& effects) {
   const bool on = !word.starts_with('-');
   const std::string_view name = on ? word : word.substr(1);
-  const auto effect = std::ranges::find(kEffects, name, &Effect::name);
+  const auto effect = std::ranges::find(kEffects, name, &TofEffectName::name);
   if (effect != kEffects.end()) {
     effects.*(effect->on) = on;
   } else if (word == "all") {
     effects = TofEffects{};
+  } else if (word == "raw") {
+    effects = TofEffects{.calibrated = false};
   } else if (word == "ideal") {
-    effects = kIdeal;
+    effects = kIdealTof;
   } else {
     ThrowUnknown(name);
   }
@@ -47,10 +63,12 @@ void Apply(std::string_view word, TofEffects& effects) {
 
 }  // namespace
 
+std::span<const TofEffectName> TofEffectNames() { return kEffects; }
+
 TofEffects ParseTofEffects(const std::string& text) {
   std::string_view rest = text;
   // What is only taken out is taken out of all; what is only named is put into none.
-  TofEffects effects = Trim(rest).starts_with('-') ? TofEffects{} : kIdeal;
+  TofEffects effects = Trim(rest).starts_with('-') ? TofEffects{} : kIdealTof;
   while (true) {
     const auto comma = rest.find(',');
     Apply(Trim(rest.substr(0, comma)), effects);

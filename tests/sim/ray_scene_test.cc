@@ -54,9 +54,9 @@ mjSpec* ParseFile(const std::filesystem::path& file) {
 
 RayHit CastOne(const RayScene& scene, const Eigen::Vector3d& origin, const Eigen::Vector3f& direction,
                float max_range_m = 100.0f) {
-  const std::vector<Eigen::Vector3f> directions{direction};
+  const std::vector<Ray> rays{{origin.cast<float>(), direction, max_range_m}};
   std::vector<RayHit> hits(1);
-  scene.Cast(origin, directions, hits, max_range_m);
+  scene.Cast(rays, hits);
   return hits[0];
 }
 
@@ -158,22 +158,22 @@ void ExpectAgreement(const Mujoco& world, const RayScene& scene, const std::stri
     // What Embree gets is what the oracle gets: numbers that float holds.
     const Eigen::Vector3d origin =
         (box.min().array() + share * box.sizes().array()).matrix().cast<float>().cast<double>();
-    std::vector<Eigen::Vector3f> directions;
+    std::vector<Ray> rays;
     std::vector<double> vectors;
     for (int i = 0; i < kRays; ++i) {
-      directions.push_back(
-          Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized().cast<float>());
-      for (int k = 0; k < 3; ++k) vectors.push_back(directions.back()[k]);
+      rays.push_back({origin.cast<float>(),
+                      Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized().cast<float>()});
+      for (int k = 0; k < 3; ++k) vectors.push_back(rays.back().direction[k]);
     }
     std::vector<RayHit> hits(kRays);
-    scene.Cast(origin, directions, hits);
+    scene.Cast(rays, hits);
     std::vector<int> geoms(kRays);
     std::vector<double> ranges(kRays), normals(3 * kRays);
     mj_multiRay(world.model, world.data, origin.data(), vectors.data(), kSeenGroups, 1, -1, geoms.data(), ranges.data(),
                 normals.data(), kRays, kReach_m);
 
     for (std::size_t i = 0; i < kRays; ++i) {
-      const Eigen::Vector3d direction = directions[i].cast<double>();
+      const Eigen::Vector3d direction = rays[i].direction.cast<double>();
       const std::string what = name + ", origin " + std::to_string(o) + ", ray " + std::to_string(i);
       if (ranges[i] > kReach_m) geoms[i] = -1;  // mj_multiRay's cutoff does not hold for planes
       const bool both_see = hits[i].geom >= 0 && geoms[i] >= 0;
@@ -221,7 +221,7 @@ TEST(RaySceneOracle, AgreesWithMuJoCoInEveryRoom) {
     ExpectAgreement(world, RayScene(world.model, world.SkipNothing()), entry.path().stem().string());
     ++rooms;
   }
-  EXPECT_GE(rooms, 2);
+  EXPECT_GE(rooms, 3);
 }
 
 TEST(RaySceneOracle, AgreesWithMuJoCoForEveryShape) {
@@ -239,19 +239,19 @@ TEST(RaySceneOracle, AgreesWithMuJoCoAfterBodiesHaveMoved) {
   std::copy_n(quaternion, 4, world.data->mocap_quat);
   world.data->qpos[0] = 2.5;
   mj_forward(world.model, world.data);
-  scene.Update(RayScene::Snapshot(world.model, world.data));
+  scene.Update(MotionsOf(world.model, world.data));
   ExpectAgreement(world, scene, "moved");
 }
 
 TEST(RayScene, KeepsTheSnapshotWhileTheWorldMovesOn) {
   const Mujoco world(Parse(kShapes));
   RayScene scene(world.model, world.SkipNothing());
-  const BodyPoses before = RayScene::Snapshot(world.model, world.data);
+  const BodyMotions before = MotionsOf(world.model, world.data);
   world.data->mocap_pos[0] = 20.0;
   mj_forward(world.model, world.data);
   scene.Update(before);
   EXPECT_NEAR(CastOne(scene, {7, 0, 5}, {0, 0, -1}).range_m, 5 - 1 - 0.6 * std::cos(0.2) * std::cos(0.1) - 0.3, 0.05);
-  scene.Update(RayScene::Snapshot(world.model, world.data));
+  scene.Update(MotionsOf(world.model, world.data));
   EXPECT_EQ(CastOne(scene, {7, 0, 5}, {0, 0, -1}).geom, world.Geom("floor"));
 }
 
@@ -318,14 +318,15 @@ TEST(RayScene, GivesARayTheSameBitsInAnyCompany) {
   const Mujoco world(Parse(kShapes));
   const RayScene scene(world.model, world.SkipNothing());
   Random random(1, Sensor::kDepth, 0);
-  std::vector<Eigen::Vector3f> directions;
+  std::vector<Ray> rays;
   for (int i = 0; i < 1003; ++i) {  // not a multiple of a packet
-    directions.push_back(Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized().cast<float>());
+    rays.push_back({{0, 0, 1},
+                    Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized().cast<float>()});
   }
-  std::vector<RayHit> hits(directions.size());
-  scene.Cast({0, 0, 1}, directions, hits);
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const RayHit alone = CastOne(scene, {0, 0, 1}, directions[i]);
+  std::vector<RayHit> hits(rays.size());
+  scene.Cast(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RayHit alone = CastOne(scene, {0, 0, 1}, rays[i].direction);
     ASSERT_EQ(alone.range_m, hits[i].range_m) << i;
     ASSERT_EQ(alone.geom, hits[i].geom) << i;
   }
@@ -335,7 +336,7 @@ TEST(RayScene, LivesInAnEmptyWorld) {
   const Mujoco world(Parse("<mujoco/>"));
   const RayScene scene(world.model, world.SkipNothing());
   EXPECT_EQ(CastOne(scene, {0, 0, 1}, {1, 0, 0}).geom, -1);
-  scene.Cast({0, 0, 0}, {}, {});
+  scene.Cast({}, {});
 }
 
 TEST(RayScene, RefusesAGeomItCannotSee) {

@@ -1,0 +1,52 @@
+// From taps to a frame: phase, amplitude, intensity, flags, and what the factory calibration takes off; then, when
+// asked for, the maker's post-processing.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "robot/types/depth_camera.h"
+#include "sim/tof/calibration.h"
+#include "sim/tof/chip.h"
+
+namespace merlin::sim {
+
+class Decoder {
+ public:
+  // pattern and corrections must outlive it; corrections: of every frequency in use, or none at all.
+  Decoder(const DepthCameraSheet& sheet, const DepthSettings& settings, const FixedPattern& pattern,
+          std::span<const WigglingCorrection> corrections, const Drift& drift);
+
+  DepthFrame EmptyFrame(Time stamp, std::uint64_t index) const;
+  // taps: of the settings' sub-frames. lit: something came back from the lamp.
+  void Decode(std::span<const Taps> taps, bool lit, std::size_t pixel, DepthFrame& frame) const;
+
+ private:
+  // One of the frame's frequencies, and what takes its wiggling off.
+  struct Wave {
+    double frequency_hz, period_m;
+    const WigglingCorrection* correction;
+  };
+  double Range_m(double phase_rad, const Wave& wave, double known_m) const;
+
+  const FixedPattern& pattern_;
+  DepthSettings settings_;
+  int width_, height_;
+  double read_noise_e_, full_well_e_, low_signal_e_;
+  double known_drift_m_;
+  double unambiguous_m_;
+  std::vector<Wave> waves_;
+};
+
+// Of two wrapped ranges the one range both can mean: the pair of periods whose ranges differ least, weighted with
+// (f amplitude)^2, as their variances are. Right while the ranges' errors differ by less than half of what the periods'
+// multiples come apart by: 1.249 m at 20 and 30 MHz (Droeschel, Holz, Behnke, IROS 2010).
+struct WrappedRange {
+  double range_m = 0.0, period_m = 0.0, weight = 0.0;
+};
+double Unwrap_m(const WrappedRange& first, const WrappedRange& second, double unambiguous_m);
+
+// The maker's own: pixels of low amplitude become kInvalid with range 0, then a 3x3 median over the valid ones.
+void PostProcess(DepthFrame& frame);
+
+}  // namespace merlin::sim

@@ -1,0 +1,40 @@
+// The lens and lamp side of a camera: where its sub-rays look, and how bright each direction is lit and seen.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "robot/types/depth_camera.h"
+#include "robot/types/depth_camera_errors.h"
+#include "sim/tof/effects.h"
+
+namespace merlin::sim {
+
+constexpr int kSubRaysPerEdge = 3;
+
+// One lamp board, in the optical frame.
+struct Board {
+  Eigen::Vector3f position{0, 0, 0};
+  float share = 1.0f;  // of the light
+};
+
+struct Optics {
+  Optics(const DepthCameraSheet& sheet, const DepthCameraErrors& errors, const TofEffects& effects);
+
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  Eigen::Vector3f Direction(std::size_t sub_ray) const { return {x[sub_ray], y[sub_ray], z[sub_ray]}; }
+  // Relative radiant intensity of the lamp along a direction (slopes x / z, y / z); 1 on the axis.
+  double Lobe(double slope_x, double slope_y) const;
+
+  int width, height;
+  int per_pixel;                    // sub-rays: 9 or 1
+  std::vector<float> x, y, z;       // [pixel * per_pixel + sub-ray] direction: unit, optical frame
+  std::vector<float> lens;          // [pixel] vignetting: cos^4 of the angle to the axis (1 without lamp effect)
+  std::vector<float> lit_and_seen;  // [pixel * per_pixel + sub-ray] lens times lobe
+  std::vector<Board> boards;        // one at the lens, or two beside it
+  double tan_half_x, tan_half_y;    // of the field of view
+  double lobe_exponent;             // 0: even
+  double lamp_reach;                // how far the lamp shines, in fields of view
+};
+
+}  // namespace merlin::sim

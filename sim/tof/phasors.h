@@ -1,0 +1,47 @@
+// The light of a pixel as phasors: one sum over all the ways light takes to it, so that edges mix by themselves.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/tof/hits.h"
+#include "sim/tof/optics.h"
+#include "sim/tof/returns.h"
+
+namespace merlin::sim {
+
+constexpr std::array<int, 3> kHarmonics{1, 3, 5};  // even ones cancel in D_0 - D_2
+
+// Electrons of a sub-frame and sum N_i e^(j n phi_i) over its ways, n of kHarmonics.
+struct Phasors {
+  float total_e = 0.0f;
+  std::array<float, 3> re{}, im{};
+
+  // One way more: electrons and phase of the first harmonic.
+  void Add(float electrons, float cosine, float sine);
+  // Turns harmonic n by n times this phase.
+  void Turn(double phase_rad);
+  void Scale(double factor);
+  Phasors& operator+=(const Phasors& other);
+};
+
+// Re(Z_1 e^(j tau) + a3 Z_3 e^(3 j tau) + a5 Z_5 e^(5 j tau)), tau = k pi / 2.
+double Correlate(const Phasors& light, int k, double a3, double a5);
+
+// What turns a hit into electrons: N = scale albedo lit_and_seen cos / d^2.
+struct PhasorScale {
+  double electrons_m2 = 0.0;         // K T / sub-rays of a pixel
+  double wave_number_rad_per_m = 0;  // 4 pi f / c: phase of a range
+  std::span<const float> albedo;     // [geom], towards the lamp: a retro-reflector's is above 1
+};
+
+// The phasors of one row of pixels. shadow: [pixel * per_pixel + sub-ray] bit b: board b does not reach what that
+// sub-ray met at mid-exposure; empty: no shadows. extra: of this row.
+void RowPhasors(const RowHits& hits, const Optics& optics, const PhasorScale& scale, const MidHits& mid,
+                std::span<const std::uint8_t> shadow, std::span<const ExtraReturn> extra, int row,
+                std::span<Phasors> out);
+
+}  // namespace merlin::sim

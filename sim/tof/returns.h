@@ -1,0 +1,41 @@
+// Light that a pixel gets by way of a pane or a mirror: what is behind, what is mirrored, and the lamp itself.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "robot/types/depth_camera_errors.h"
+#include "sim/tof/effects.h"
+#include "sim/tof/hits.h"
+#include "sim/tof/optics.h"
+#include "sim/tof/surroundings.h"
+
+namespace merlin::sim {
+
+// One return more of a sub-ray, taken at mid-exposure; in a sub-frame it lies beyond_m behind what the sub-ray meets
+// there, if that is still the same geom.
+struct ExtraReturn {
+  std::size_t sub_ray = 0;
+  int geom = -1;               // the pane or mirror
+  float beyond_m = 0.0f;       // unfolded length from there on
+  float strength = 0.0f;       // electrons = K T / sub-rays strength / length^2
+  float ambient_share = 0.0f;  // of the ambient light of what is there, one way
+  RayHit hit{};                // what is there
+  Eigen::Vector3f point{0, 0, 0};
+};
+
+// Reflectance of a pane's two faces together, not polarised, at this cosine of incidence (Fresnel; R + R (1 - R)^2 +
+// ... = 2 R / (1 + R)), and what passes, absorption included.
+struct PaneOptics {
+  double reflected = 0.0, passed = 0.0;
+};
+PaneOptics PaneAt(double cosine, double glass_transmission);
+
+// Of the whole picture, in order of sub-rays.
+std::vector<ExtraReturn> TraceReturns(const RayScene& scene, const Surroundings& around, const Optics& optics,
+                                      const MidHits& mid, const DepthCameraErrors& errors, const TofEffects& effects);
+
+// Albedo towards the lamp [geom].
+std::vector<float> LampAlbedos(const Surroundings& around, const TofEffects& effects);
+
+}  // namespace merlin::sim

@@ -1,0 +1,18 @@
+// What a frame is taken of.
+#pragma once
+
+#include "sim/motion.h"
+#include "sim/ray_scene.h"
+#include "sim/tof/surroundings.h"
+
+namespace merlin::sim {
+
+// camera: the optical frame at mid-exposure; it and the bodies move on at constant velocity through the sub-frames.
+struct TofView {
+  RayScene& scene;
+  const Surroundings& surroundings;
+  const BodyMotions& bodies;
+  BodyMotion camera;
+};
+
+}  // namespace merlin::sim
