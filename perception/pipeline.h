@@ -6,6 +6,7 @@
 
 #include "perception/filter/depth_filter.h"
 #include "perception/fuse.h"
+#include "perception/integration_time.h"
 #include "perception/observation.h"
 #include "perception/odometry.h"
 #include "perception/project.h"
@@ -17,6 +18,7 @@ namespace merlin {
 
 struct PerceptionConfig {
   DepthFilterConfig filter;
+  IntegrationConfig integration;
   HeadingConfig heading;
   double color_age_max_s = 0.3;  // [0, 10] older pictures colour no points
 };
@@ -24,6 +26,7 @@ struct PerceptionConfig {
 template <class Visitor>
 void Visit(Visitor& v, PerceptionConfig& c) {
   v("filter", c.filter);
+  v("integration", c.integration);
   v("heading", c.heading);
   v("color_age_max_s", c.color_age_max_s, {0.0, 10.0});
 }

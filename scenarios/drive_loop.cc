@@ -25,6 +25,7 @@ Rig RigOf(const Robot& robot, const CarDescription& car) {
 DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception,
                      const SlamConfig& slam, const Task& task, const PilotConfig& pilot)
     : robot_(robot),
+      integration_(perception.integration),
       period_(FromSeconds(1.0 / robot.depth->Info().rate_hz)),
       pipeline_(RigOf(robot, car), perception),
       slam_(slam),
@@ -48,6 +49,7 @@ bool DriveLoop::Tick(const LoopObserver& observer) {
     last_depth_ = robot_.clock->Now();
     if (observer.depth) observer.depth(*frame);
     const auto begin = std::chrono::steady_clock::now();
+    if (integration_.adapt) AdaptExposure(*frame);
     const auto observation = pipeline_.Process(std::move(*frame));
     if (!observation) continue;
     const auto T_map_base = slam_.Update(*observation);
@@ -58,6 +60,12 @@ bool DriveLoop::Tick(const LoopObserver& observer) {
     if (observer.tick) observer.tick(robot_.clock->Now(), decision);
   }
   return done;
+}
+
+void DriveLoop::AdaptExposure(const DepthFrame& frame) {
+  const DepthCameraInfo& info = robot_.depth->Info();
+  const DepthSettings adapted = Adapt(frame, info.sheet, info.rate_hz, integration_);
+  if (adapted.integration_s != frame.settings.integration_s) robot_.depth->Configure(adapted);
 }
 
 void DriveLoop::Stand() {

@@ -37,8 +37,10 @@ class DriveLoop {
  private:
   bool Tick(const LoopObserver& observer);  // true: the task is done
   void Stand();
+  void AdaptExposure(const DepthFrame& frame);
 
   Robot robot_;
+  IntegrationConfig integration_;
   Duration period_;
   Pipeline pipeline_;
   Slam slam_;

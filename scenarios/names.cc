@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 
 #include "robot/types/error.h"
 #include "robot/types/nearest_name.h"
@@ -31,6 +32,22 @@ fs::path Resolve(const std::string& what, const std::string& name, const fs::pat
   throw InputError("unknown " + what + " '" + name + "'; did you mean '" + NearestName(name, known) + "'?");
 }
 
+fs::path CameraPath(const std::string& name) { return Home() / "models/cameras" / (name + ".yaml"); }
+
+// Only the sheet of a time-of-flight camera has modulation frequencies.
+bool IsDepthCamera(const fs::path& sheet) {
+  std::ifstream in(sheet);
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("frequencies_mhz:")) return true;
+  return false;
+}
+
+std::vector<std::string> CameraNamesOf(bool depth) {
+  std::vector<std::string> names = CameraNames();
+  std::erase_if(names, [=](const std::string& name) { return IsDepthCamera(CameraPath(name)) != depth; });
+  return names;
+}
+
 }  // namespace
 
 fs::path Home() {
@@ -45,7 +62,13 @@ fs::path RoomFile(const std::string& name) {
   return Resolve("room", name, Home() / "models/rooms" / (name + ".xml"), ".xml", RoomNames());
 }
 fs::path CameraFile(const std::string& name) {
-  return Resolve("camera", name, Home() / "models/cameras" / (name + ".yaml"), ".yaml", CameraNames());
+  return Resolve("camera", name, CameraPath(name), ".yaml", CameraNames());
+}
+fs::path DepthCameraFile(const std::string& name) {
+  return Resolve("depth camera", name, CameraPath(name), ".yaml", CameraNamesOf(true));
+}
+fs::path ColorCameraFile(const std::string& name) {
+  return Resolve("colour camera", name, CameraPath(name), ".yaml", CameraNamesOf(false));
 }
 fs::path CarFile(const std::string& name) {
   return Resolve("car", name, Home() / "models" / name / (name + ".urdf"), ".urdf", {"merlin"});

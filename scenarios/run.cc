@@ -37,27 +37,35 @@ void RequireMaterial(const std::string& name, const sim::Materials& materials) {
                                             NearestName(name, std::views::keys(materials.by_name))));
 }
 
+DepthSettings SettingsOf(const DepthSensor& sensor) {
+  return {.integration_s = sensor.integration_us * 1e-6,
+          .frequency_hz = sensor.frequency_mhz * 1e6,
+          .second_frequency_hz = sensor.second_frequency_mhz * 1e6,
+          .post_processing = sensor.post_processing};
+}
+
 TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   const Sensors& sensors = scenario.sensors;
   TwinOptions twin;
   const CarStart& start = scenario.car.start;
   twin.world = {RoomFile(scenario.room), ReadCar(CarFile(scenario.car.model)), FromXyYaw(start.x_m, start.y_m, start.yaw_rad),
-                ObstaclesOf(scenario)};
+                ObstaclesOf(scenario), scenario.curtain == "closed"};
   twin.materials = sim::ReadMaterials(Home() / "models/materials.yaml");
   twin.seed = scenario.seed;
-  twin.depth = {ReadDepthCameraSheet(CameraFile(sensors.depth.camera)),
-                {sensors.depth.integration_us * 1e-6, sensors.depth.frequency_mhz * 1e6},
-                sim::ParseTofEffects(sensors.depth.effects),
-                sensors.depth.rate_hz};
+  const std::filesystem::path depth_file = DepthCameraFile(sensors.depth.camera);
+  twin.depth = {ReadDepthCameraSheet(depth_file), ReadDepthCameraErrors(depth_file), SettingsOf(sensors.depth),
+                sim::ParseTofEffects(sensors.depth.effects), sensors.depth.rate_hz};
   RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, twin.depth.sheet.rate_max_hz);
-  RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz,
-              0.25 / (twin.depth.settings.integration_s + twin.depth.sheet.readout_s));  // four sub-frames
+  RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, 1.0 / twin.depth.sheet.ExposureSpan_s(twin.depth.settings));
   for (const ObstacleEvent& event : scenario.obstacles) RequireMaterial(event.material, twin.materials);
   twin.depth.sheet.latency_s = sensors.depth.latency_s.value_or(twin.depth.sheet.latency_s);
   if (sensors.color) {
-    twin.color.emplace(ReadColorCameraSheet(CameraFile(sensors.color->camera)), sensors.color->rate_hz, options.gl);
+    twin.color.emplace(ReadColorCameraSheet(ColorCameraFile(sensors.color->camera)), sensors.color->rate_hz, options.gl);
     RequireRate("sensors.color.rate_hz", sensors.color->rate_hz, twin.color->sheet.rate_max_hz);
     twin.color->sheet.latency_s = sensors.color->latency_s.value_or(twin.color->sheet.latency_s);
+    if (sensors.color->exposure_us)
+      twin.color->settings = ColorSettings{.exposure_s = *sensors.color->exposure_us * 1e-6, .auto_exposure = false};
+    twin.color->motion_blur = sensors.color->motion_blur;
   }
   if (sensors.compass)
     twin.compass.emplace(sim::CompassConfig{sensors.compass->noise_rad, sensors.compass->noise_rad}, sensors.compass->rate_hz);

@@ -76,6 +76,8 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
   anchor("sensors.depth.camera", scenario.sensors.depth.camera);
   if (scenario.sensors.color) anchor("sensors.color.camera", scenario.sensors.color->camera);
   if (!root["room"].IsDefined()) faults.push_back(file.string() + ": room: missing; which room to drive in");
+  if (scenario.curtain != "open" && scenario.curtain != "closed")
+    faults.push_back(file.string() + ": curtain: expected open or closed, got '" + scenario.curtain + "'");
   const std::vector<std::string> behaviors = BehaviorNames();
   if (std::ranges::find(behaviors, scenario.task.behavior) == behaviors.end())
     faults.push_back(file.string() + ": task.behavior: unknown behavior '" + scenario.task.behavior + "'; did you mean '" +

@@ -42,9 +42,11 @@ void Visit(Visitor& v, CarChoice& c) {
 struct DepthSensor {
   std::string camera = "pmd_3k_s";  // models/cameras/<name>.yaml, or a path
   double rate_hz = 20.0;            // of the stack too; up to the sheet's
-  std::string effects = "all";      // all, ideal, or names
+  std::string effects = "all";      // all, raw, ideal, or names
   double integration_us = 1000.0;   // valid ones: the camera's sheet
   double frequency_mhz = 20.0;
+  double second_frequency_mhz = 0.0;  // 0: none; another valid one: eight sub-frames, and a range that wraps later
+  bool post_processing = false;     // the maker's own: low amplitudes masked, 3x3 median
   std::optional<double> latency_s;  // default: the sheet's
 };
 
@@ -55,6 +57,8 @@ void Visit(Visitor& v, DepthSensor& c) {
   v("effects", c.effects);
   v("integration_us", c.integration_us, {1.0, 1e6});
   v("frequency_mhz", c.frequency_mhz, {0.1, 1000.0});
+  v("second_frequency_mhz", c.second_frequency_mhz, {0.0, 1000.0});
+  v("post_processing", c.post_processing);
   v("latency_s", c.latency_s, {0.0, 0.5});
 }
 
@@ -62,6 +66,8 @@ struct ColorSensor {
   std::string camera = "ccd";
   double rate_hz = 10.0;
   bool required = true;             // without GL: stop before it starts (true), or run without colour (false)
+  std::optional<double> exposure_us;  // fixed, at gain 1; default: automatic. Valid ones: the camera's sheet
+  bool motion_blur = false;         // eight pictures a frame, each at the cost of one
   std::optional<double> latency_s;
 };
 
@@ -70,6 +76,8 @@ void Visit(Visitor& v, ColorSensor& c) {
   v("camera", c.camera);
   v("rate_hz", c.rate_hz, {0.1, 500.0});
   v("required", c.required);
+  v("exposure_us", c.exposure_us, {1.0, 1e7});
+  v("motion_blur", c.motion_blur);
   v("latency_s", c.latency_s, {0.0, 0.5});
 }
 
@@ -123,6 +131,7 @@ void Visit(Visitor& v, ObstacleEvent& c) {
 
 struct Scenario {
   std::string room;                // models/rooms/<name>.xml, or a path
+  std::string curtain = "open";    // open or closed; closed needs a room with a curtain
   CarChoice car;
   double duration_s = 60.0;        // the run ends here at the latest; earlier when the task is done
   std::uint64_t seed = 1;
@@ -138,6 +147,7 @@ struct Scenario {
 template <class Visitor>
 void Visit(Visitor& v, Scenario& c) {
   v("room", c.room);
+  v("curtain", c.curtain);
   v("car", c.car);
   v("duration_s", c.duration_s, {0.1, 1e5});
   v("seed", c.seed);

@@ -27,6 +27,30 @@ std::array<std::uint32_t, 4> Philox4x32(std::array<std::uint32_t, 4> counter, st
   return counter;
 }
 
+std::array<std::array<std::uint32_t, 4>, 4> Philox4x32Quad(std::array<std::uint32_t, 4> counter,
+                                                           std::array<std::uint32_t, 2> key) {
+  std::array<std::array<std::uint32_t, 4>, 4> words;  // [word][block]: the compiler puts the blocks side by side
+  for (std::uint32_t block = 0; block < 4; ++block)
+    for (int word = 0; word < 4; ++word) words[word][block] = counter[word] + (word == 1 ? block : 0);
+  for (int round = 0; round < kRounds; ++round) {
+    for (int block = 0; block < 4; ++block) {
+      const std::uint64_t product0 = std::uint64_t{kMultiplier0} * words[0][block];
+      const std::uint64_t product1 = std::uint64_t{kMultiplier1} * words[2][block];
+      const std::uint32_t word1 = words[1][block], word3 = words[3][block];
+      words[0][block] = static_cast<std::uint32_t>(product1 >> 32) ^ word1 ^ key[0];
+      words[1][block] = static_cast<std::uint32_t>(product1);
+      words[2][block] = static_cast<std::uint32_t>(product0 >> 32) ^ word3 ^ key[1];
+      words[3][block] = static_cast<std::uint32_t>(product0);
+    }
+    key[0] += kWeyl0;
+    key[1] += kWeyl1;
+  }
+  std::array<std::array<std::uint32_t, 4>, 4> blocks;
+  for (int block = 0; block < 4; ++block)
+    for (int word = 0; word < 4; ++word) blocks[block][word] = words[word][block];
+  return blocks;
+}
+
 Random::Random(std::uint64_t seed, Sensor sensor, std::uint64_t frame, std::uint32_t pixel, std::uint16_t purpose)
     : counter_{0, pixel, static_cast<std::uint32_t>(frame),
                static_cast<std::uint32_t>(frame >> 32 & 0xFF) | static_cast<std::uint32_t>(sensor) << 8 |

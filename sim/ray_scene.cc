@@ -7,6 +7,7 @@
 #include <cstring>
 #include <deque>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "robot/types/error.h"
@@ -22,7 +23,13 @@ constexpr float kBoundsMargin_m = 1e-4f;  // a curved geom's box must hold it in
 
 constexpr unsigned kOpaqueMask = 1, kPaneMask = 2;
 
-enum GeometryId : unsigned { kTriangles = 0, kCurved = 1 };  // of the scene of a group
+// Embree's numbers of the g-th group's geometries, in whichever scene they are: 2 g for triangles, 2 g + 1 for curved ones.
+constexpr unsigned TrianglesId(unsigned group) { return 2 * group; }
+constexpr unsigned CurvedId(unsigned group) { return 2 * group + 1; }
+constexpr bool IsCurved(unsigned id) { return id % 2 == 1; }
+constexpr unsigned GroupOf(unsigned id) { return id / 2; }
+
+unsigned MaskOf(const RayGroup& group) { return group.panes ? kPaneMask : kOpaqueMask; }
 
 struct Release {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -90,7 +97,7 @@ Scene NewScene(RTCDevice device, RTCSceneFlags flags) {
   return scene;
 }
 
-void AttachTriangles(RTCDevice device, RTCScene scene, const RayGroup& group) {
+void AttachTriangles(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned id) {
   const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
   void* vertices = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                            sizeof(group.vertices[0]), group.vertices.size());
@@ -102,22 +109,32 @@ void AttachTriangles(RTCDevice device, RTCScene scene, const RayGroup& group) {
     rtcSetGeometryIntersectFilterFunction(geometry.get(), SeenFromAboveOnly);
     rtcSetGeometryOccludedFilterFunction(geometry.get(), SeenFromAboveOnly);
   }
+  rtcSetGeometryMask(geometry.get(), MaskOf(group));
   rtcCommitGeometry(geometry.get());
-  rtcAttachGeometryByID(scene, geometry.get(), kTriangles);
+  rtcAttachGeometryByID(scene, geometry.get(), id);
 }
 
-void AttachCurved(RTCDevice device, RTCScene scene, const RayGroup& group) {
+void AttachCurved(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned id) {
   const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
   rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(group.curved.size()));
   rtcSetGeometryUserData(geometry.get(), const_cast<RayGroup*>(&group));  // read only
   rtcSetGeometryBoundsFunction(geometry.get(), CurvedBounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry.get(), IntersectCurved);
   rtcSetGeometryOccludedFunction(geometry.get(), OccludeByCurved);
+  rtcSetGeometryMask(geometry.get(), MaskOf(group));
   rtcCommitGeometry(geometry.get());
-  rtcAttachGeometryByID(scene, geometry.get(), kCurved);
+  rtcAttachGeometryByID(scene, geometry.get(), id);
 }
 
-// A group as Embree has it: a scene of its own, and where it stands.
+void Attach(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned number) {
+  if (!group.triangles.empty()) AttachTriangles(device, scene, group, TrianglesId(number));
+  if (!group.curved.empty()) AttachCurved(device, scene, group, CurvedId(number));
+}
+
+// What stands where it is for good is part of the top scene itself: one level less for most rays.
+bool IsFixed(const RayGroup& group) { return group.body == 0 && !group.one_sided; }
+
+// Any other group is a scene of its own, and where it stands.
 struct Instance {
   const RayGroup* group;
   Scene scene;
@@ -126,15 +143,14 @@ struct Instance {
   Eigen::Matrix4f T_world_group_last = Eigen::Matrix4f::Identity();
   bool placed = false;
 
-  Instance(RTCDevice device, const RayGroup& of)
+  Instance(RTCDevice device, const RayGroup& of, unsigned number)
       : group(&of),
         scene(NewScene(device, RTC_SCENE_FLAG_ROBUST)),
         geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE)) {
-    if (!of.triangles.empty()) AttachTriangles(device, scene.get(), of);
-    if (!of.curved.empty()) AttachCurved(device, scene.get(), of);
+    Attach(device, scene.get(), of, number);
     rtcCommitScene(scene.get());
     rtcSetGeometryInstancedScene(geometry.get(), scene.get());
-    rtcSetGeometryMask(geometry.get(), of.panes ? kPaneMask : kOpaqueMask);
+    rtcSetGeometryMask(geometry.get(), MaskOf(of));
   }
 
   // False: it stands there already.
@@ -190,21 +206,27 @@ RTCIntersectContext CoherentContext() {
 struct RayScene::Impl {
   std::deque<RayGroup> groups;  // Embree keeps their addresses
   Device device{rtcNewDevice(kDeviceConfig)};
-  std::vector<Instance> instances;  // [instance id]
-  std::vector<bool> moves;          // [geom id]
+  std::map<unsigned, Instance> instances;  // by the group's number
+  std::vector<bool> moves;                 // [geom id]
   Scene top;
   bool fresh = true;  // never committed
 
   Impl(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane)
       : groups(GroupGeoms(model, skip_body, is_pane)) {
     if (!device) throw MachineError("ray casting: Embree cannot be started on this machine");
-    top = NewScene(device.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
-    for (const RayGroup& group : groups) {
-      const auto id = static_cast<unsigned>(instances.size());
-      instances.emplace_back(device.get(), group);
-      rtcAttachGeometryByID(top.get(), instances.back().geometry.get(), id);
+    const bool moving = std::ranges::any_of(groups, [](const RayGroup& group) { return group.body != 0; });
+    const int flags = moving ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST;
+    top = NewScene(device.get(), static_cast<RTCSceneFlags>(flags));
+    for (unsigned number = 0; number < groups.size(); ++number) {
+      if (IsFixed(groups[number])) {
+        Attach(device.get(), top.get(), groups[number], number);
+        continue;
+      }
+      const Instance& made = instances.try_emplace(number, device.get(), groups[number], number).first->second;
+      rtcAttachGeometryByID(top.get(), made.geometry.get(), CurvedId(static_cast<unsigned>(groups.size())) + number);
     }
-    for (int geom = 0; geom < model->ngeom; ++geom) moves.push_back(model->body_weldid[model->geom_bodyid[geom]] != 0);
+    for (int geom = 0; geom < model->ngeom; ++geom)
+      moves.push_back(model->body_weldid[model->geom_bodyid[geom]] != 0);
   }
 
   void Commit() {
@@ -217,14 +239,14 @@ struct RayScene::Impl {
   RayHit ReadHit(const RTCRayHit8& packet, std::size_t i, const Eigen::Vector3f& direction_world) const {
     const RTCHit8& hit = packet.hit;
     if (hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) return {};
-    const Instance& instance = instances[hit.instID[0][i]];
-    const RayGroup& group = *instance.group;
-    const Eigen::Vector3f normal_group(hit.Ng_x[i], hit.Ng_y[i], hit.Ng_z[i]);
-    const Eigen::Vector3f normal = (instance.R_world_group * normal_group).normalized();
-    return {
-        .range_m = packet.ray.tfar[i],
-        .geom = hit.geomID[i] == kTriangles ? group.geom_of_triangle[hit.primID[i]] : group.curved[hit.primID[i]].geom,
-        .normal = normal.dot(direction_world) > 0.0f ? Eigen::Vector3f(-normal) : normal};
+    const unsigned number = GroupOf(hit.geomID[i]);
+    const RayGroup& group = groups[number];
+    Eigen::Vector3f normal(hit.Ng_x[i], hit.Ng_y[i], hit.Ng_z[i]);
+    if (!IsFixed(group)) normal = instances.at(number).R_world_group * normal;
+    normal.normalize();
+    return {.range_m = packet.ray.tfar[i],
+            .geom = IsCurved(hit.geomID[i]) ? group.curved[hit.primID[i]].geom : group.geom_of_triangle[hit.primID[i]],
+            .normal = normal.dot(direction_world) > 0.0f ? Eigen::Vector3f(-normal) : normal};
   }
 };
 
@@ -239,7 +261,7 @@ bool RayScene::Moves(int geom) const { return impl_->moves[static_cast<std::size
 
 void RayScene::Update(const BodyMotions& bodies, double dt_s) {
   bool moved = std::exchange(impl_->fresh, false);
-  for (Instance& instance : impl_->instances)
+  for (auto& [number, instance] : impl_->instances)
     moved |= instance.Place(bodies[static_cast<std::size_t>(instance.group->body)].At(dt_s));
   if (moved) impl_->Commit();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "robot/types/error.h"
@@ -52,7 +53,8 @@ mjvOption OnlyGeoms() {
 }
 
 // Leaves out what cannot be in the picture: a corridor has hundreds of geoms and a camera sees a few dozen.
-void DropUnseen(const mjModel* model, const Pose& T_world_camera, const CameraModel& camera, mjvScene& scene) {
+void DropUnseen(const mjModel* model, const Pose& T_world_camera, const CameraModel& camera, const Sway& sway,
+                mjvScene& scene) {
   const Slopes edges = EdgesOf(camera);
   const std::array<Eigen::Vector3d, 5> inward{
       Eigen::Vector3d(1, 0, -edges.left).normalized(), Eigen::Vector3d(-1, 0, edges.right).normalized(),
@@ -64,10 +66,22 @@ void DropUnseen(const mjModel* model, const Pose& T_world_camera, const CameraMo
     const double radius_m = model->geom_rbound[geom.objid];
     if (radius_m <= 0.0) return false;  // a plane
     const Eigen::Vector3d centre = T_camera_world * Eigen::Vector3d(geom.pos[0], geom.pos[1], geom.pos[2]);
+    const double sway_m = sway.shift_m + sway.turn_rad * (centre.norm() + radius_m);
     return std::any_of(inward.begin(), inward.end(),
-                       [&](const Eigen::Vector3d& n) { return n.dot(centre) < -radius_m - 1e-3; });
+                       [&](const Eigen::Vector3d& n) { return n.dot(centre) < -radius_m - sway_m - 1e-3; });
   };
   scene.ngeom = static_cast<int>(std::remove_if(scene.geoms, scene.geoms + scene.ngeom, unseen) - scene.geoms);
+}
+
+// What is near and small first, walls and planes last: a pixel hidden already costs the rasteriser next to nothing.
+void NearAndSmallFirst(const mjModel* model, const Eigen::Vector3d& eye_world, mjvScene& scene) {
+  const auto reach_m = [&](const mjvGeom& geom) {
+    const double radius_m = geom.objtype == mjOBJ_GEOM && geom.objid >= 0 ? model->geom_rbound[geom.objid] : 0.0;
+    if (radius_m <= 0.0) return HUGE_VAL;
+    return (Eigen::Vector3d(geom.pos[0], geom.pos[1], geom.pos[2]) - eye_world).norm() + radius_m;
+  };
+  std::stable_sort(scene.geoms, scene.geoms + scene.ngeom,
+                   [&](const mjvGeom& a, const mjvGeom& b) { return reach_m(a) < reach_m(b); });
 }
 
 }  // namespace
@@ -81,15 +95,20 @@ RenderSnapshot::RenderSnapshot(const mjModel* model) {
 RenderSnapshot::~RenderSnapshot() { mjv_freeScene(&scene); }
 
 void RenderSnapshot::Take(const mjModel* model, const mjData* data, const Pose& T_world_camera,
-                          const CameraModel& camera) {
-  scene.camera[0] = scene.camera[1] = GlCamera(T_world_camera, camera);  // MuJoCo draws from the mean of the two
+                          const CameraModel& camera, const Sway& sway) {
+  Look(T_world_camera, camera);
   mjvCamera as_set;
   mjv_defaultCamera(&as_set);
   as_set.type = mjCAMERA_USER;
   const mjvOption option = OnlyGeoms();
   // MuJoCo asks for a writable mjData for its scratch stack; the state stays as it is.
   mjv_updateScene(model, const_cast<mjData*>(data), &option, nullptr, &as_set, mjCAT_STATIC | mjCAT_DYNAMIC, &scene);
-  DropUnseen(model, T_world_camera, camera, scene);
+  DropUnseen(model, T_world_camera, camera, sway, scene);
+  NearAndSmallFirst(model, T_world_camera.translation(), scene);
+}
+
+void RenderSnapshot::Look(const Pose& T_world_camera, const CameraModel& camera) {
+  scene.camera[0] = scene.camera[1] = GlCamera(T_world_camera, camera);  // MuJoCo draws from the mean of the two
 }
 
 struct Renderer::Impl {

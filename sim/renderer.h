@@ -16,13 +16,24 @@ namespace merlin::sim {
 
 enum class Gl { kAuto, kEgl, kOsmesa, kOff };
 
+// How far a camera may get from where it is while it exposes.
+struct Sway {
+  double shift_m = 0.0;
+  double turn_rad = 0.0;
+};
+
 // What MuJoCo needs to draw, taken at exposure: the picture may be drawn later, beside the physics.
 class RenderSnapshot {
  public:
   explicit RenderSnapshot(const mjModel* model);
   ~RenderSnapshot();
+  RenderSnapshot(const RenderSnapshot&) = delete;
+  RenderSnapshot& operator=(const RenderSnapshot&) = delete;
   // Camera: optical frame, its pinhole part only (no distortion). Keeps what can be in that camera's picture.
-  void Take(const mjModel* model, const mjData* data, const Pose& T_world_camera, const CameraModel& camera);
+  void Take(const mjModel* model, const mjData* data, const Pose& T_world_camera, const CameraModel& camera,
+            const Sway& sway = {});
+  // The same world from another place, no farther than the sway.
+  void Look(const Pose& T_world_camera, const CameraModel& camera);
   mjvScene scene;
 };
 

@@ -29,7 +29,7 @@ bool IsGhost(double range_m, double amplitude_e, double lamp_amplitude_e_m2, dou
 
 FilteredDepth FilterDepth(DepthFrame frame, const DepthCameraSheet& sheet, const DepthFilterConfig& config) {
   const double lamp = sheet.LampAmplitude_e_m2(frame.settings);
-  const double unambiguous_m = UnambiguousRange_m(frame.settings.frequency_hz);
+  const double unambiguous_m = UnambiguousRange_m(frame.settings);
   FilteredDepth out;
   out.reasons.resize(frame.size());
   for (std::size_t i = 0; i < frame.size(); ++i)

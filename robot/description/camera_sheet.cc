@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 #include <set>
 
@@ -54,6 +56,17 @@ class SheetReader {
     for (const YAML::Node& item : node) numbers.push_back(Check(item, key, range));
     return numbers;
   }
+  bool Flag(const char* key) {
+    known_.insert(key);
+    const YAML::Node node = root_[key];
+    bool flag = false;
+    if (!node.IsDefined())
+      Fault(root_, fmt::format("missing key '{}'", key));
+    else if (!node.IsScalar() || !YAML::convert<bool>::decode(node, flag))
+      Fault(node, fmt::format("'{}': expected true or false, got '{}'", key,
+                              node.IsScalar() ? node.Scalar() : "no single value"));
+    return flag;
+  }
   std::string Text(const char* key) {
     known_.insert(key);
     const YAML::Node node = root_[key];
@@ -62,21 +75,47 @@ class SheetReader {
     return "";
   }
 
-  void Require(bool holds, const std::string& rule) {
-    if (!holds) Fault(root_, rule);
+  // An optional map whose keys are a config's fields, each optional, too.
+  template <class Config>
+  void MapOr(const char* key, Config& config) {
+    known_.insert(key);
+    const YAML::Node node = root_[key];
+    if (!node.IsDefined() || node.IsNull()) return;
+    if (!node.IsMap()) {
+      Fault(node, fmt::format("'{}' must be a map of keys", key));
+      return;
+    }
+    SheetReader inner(file_, node);
+    Visit(inner, config);
+    inner.RefuseUnknown();
+    Append(inner.faults_);
+  }
+  // The visitor of such a config's fields.
+  void operator()(const char* key, double& value, Range range) { value = NumberOr(key, range, value); }
+
+  // A rule between the values of these keys; asked only of values that are right on their own.
+  void Require(bool holds, std::initializer_list<const char*> keys, const std::string& rule) {
+    const bool sound =
+        std::ranges::none_of(keys, [this](const char* key) { return !root_[key].IsDefined() || wrong_.contains(key); });
+    if (sound && !holds) Fault(root_[*keys.begin()], rule);
   }
 
   // Call last. Throws for unknown keys and for all faults met before.
   void Finish() {
+    RefuseUnknown();
+    if (!faults_.empty()) throw InputError(faults_);
+  }
+
+ private:
+  SheetReader(const std::string& file, const YAML::Node& map) : file_(file), root_(map) {}
+
+  void RefuseUnknown() {
     for (const auto& entry : root_) {
       const std::string key = entry.first.Scalar();
       if (!known_.contains(key))
         Fault(entry.first, fmt::format("unknown key '{}'; did you mean '{}'?", key, NearestName(key, known_)));
     }
-    if (!faults_.empty()) throw InputError(faults_);
   }
-
- private:
   double Check(const YAML::Node& node, const char* key, Range range) {
     double number = std::nan("");
     try {
@@ -84,28 +123,36 @@ class SheetReader {
     } catch (const YAML::Exception&) {
     }
     if (number >= range.min && number <= range.max && std::isfinite(number)) return number;
+    wrong_.insert(key);
     return Fault(node, fmt::format("'{}': expected a number in [{:g}, {:g}], got '{}'", key, range.min, range.max,
                                    node.IsScalar() ? node.Scalar() : "no single value"));
   }
   double Fault(const YAML::Node& node, const std::string& what) {
     const YAML::Mark mark = node.Mark();
-    faults_ += (faults_.empty() ? "" : "\n") + (mark.is_null() ? file_ : fmt::format("{}:{}", file_, mark.line + 1)) +
-               ": " + what;
+    Append((mark.is_null() ? file_ : fmt::format("{}:{}", file_, mark.line + 1)) + ": " + what);
     return 1.0;  // so that what is computed from it stays finite until Finish throws
+  }
+  void Append(const std::string& faults) {
+    if (!faults.empty()) faults_ += (faults_.empty() ? "" : "\n") + faults;
   }
 
   std::string file_, faults_;
   YAML::Node root_;
   std::set<std::string> known_;
+  std::set<std::string> wrong_;  // keys whose value is no number in its range
 };
 
 double TanHalf(double angle_deg) { return std::tan(0.5 * angle_deg * std::numbers::pi / 180.0); }
 
-}  // namespace
-
-DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml) {
-  SheetReader in(yaml);
+struct DepthCameraFile {
   DepthCameraSheet sheet;
+  DepthCameraErrors errors;
+};
+
+DepthCameraFile ReadDepthCamera(const std::filesystem::path& yaml) {
+  SheetReader in(yaml);
+  DepthCameraFile file;
+  DepthCameraSheet& sheet = file.sheet;
   sheet.name = in.Text("name");
   CameraModel& camera = sheet.camera;
   camera.width = in.Whole("width_px", {1, 4096});
@@ -121,15 +168,34 @@ DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml) {
   sheet.contrast_corner_hz = 1e6 * in.Number("contrast_corner_mhz", {0.1, 1e5});
   sheet.read_noise_e = in.Number("read_noise_e", {0, 1e6});
   sheet.full_well_e = in.Number("full_well_e", {1, 1e12});
+  sheet.sbi = in.Flag("sbi");
   sheet.readout_s = 1e-3 * in.Number("readout_ms", {0, 1000});
   sheet.low_signal_amplitude_e = in.Number("low_signal_amplitude_e", {0, 1e9});
   sheet.integration_min_s = 1e-6 * in.Number("integration_min_us", {0.1, 1e7});
   sheet.integration_max_s = 1e-6 * in.Number("integration_max_us", {0.1, 1e7});
   for (const double mhz : in.Numbers("frequencies_mhz", {0.1, 1000})) sheet.frequencies_hz.push_back(mhz * 1e6);
-  in.Require(sheet.integration_min_s <= sheet.integration_max_s, "integration_min_us is above integration_max_us");
+  in.MapOr("errors", file.errors);
+
+  in.Require(sheet.integration_min_s <= sheet.integration_max_s, {"integration_min_us", "integration_max_us"},
+             "integration_min_us is above integration_max_us");
+  const std::set<double> different(sheet.frequencies_hz.begin(), sheet.frequencies_hz.end());
+  in.Require(different.size() == sheet.frequencies_hz.size(), {"frequencies_mhz"}, "'frequencies_mhz' lists one twice");
+  const double shortest_s = sheet.ExposureSpan_s({.integration_s = sheet.integration_min_s});
+  in.Require(
+      shortest_s <= 1.0 / sheet.rate_max_hz, {"rate_max_hz", "integration_min_us", "readout_ms"},
+      fmt::format("'rate_max_hz': the four sub-frames of the shortest exposure take {:g} ms, a period is {:g} ms",
+                  shortest_s * 1e3, 1e3 / sheet.rate_max_hz));
+  in.Require(sheet.full_well_e > sheet.read_noise_e, {"full_well_e", "read_noise_e"},
+             "full_well_e is not above read_noise_e");
   in.Finish();
-  return sheet;
+  return file;
 }
+
+}  // namespace
+
+DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml) { return ReadDepthCamera(yaml).sheet; }
+
+DepthCameraErrors ReadDepthCameraErrors(const std::filesystem::path& yaml) { return ReadDepthCamera(yaml).errors; }
 
 ColorCameraSheet ReadColorCameraSheet(const std::filesystem::path& yaml) {
   SheetReader in(yaml);
@@ -148,9 +214,22 @@ ColorCameraSheet ReadColorCameraSheet(const std::filesystem::path& yaml) {
   camera.p2 = in.NumberOr("p2", {-1, 1}, 0.0);
   sheet.rate_max_hz = in.Number("rate_max_hz", {0.1, 1000});
   sheet.latency_s = 1e-3 * in.Number("latency_ms", {0, 10000});
-  sheet.read_noise_dn = in.Number("read_noise_dn", {0, 100});
-  sheet.gain_dn_per_e = in.Number("gain_dn_per_e", {0, 100});
+  sheet.full_well_e = in.Number("full_well_e", {1, 1e12});
+  sheet.read_noise_e = in.Number("read_noise_e", {0, 1e6});
+  sheet.falloff_power = in.Number("falloff_power", {0, 16});
+  sheet.exposure_nominal_s = 1e-3 * in.Number("exposure_nominal_ms", {1e-3, 1e4});
+  sheet.exposure_min_s = 1e-3 * in.Number("exposure_min_ms", {1e-3, 1e4});
+  sheet.exposure_max_s = 1e-3 * in.Number("exposure_max_ms", {1e-3, 1e4});
+  sheet.gain_max = in.Number("gain_max", {1, 1000});
+  in.Require(sheet.exposure_min_s <= sheet.exposure_nominal_s && sheet.exposure_nominal_s <= sheet.exposure_max_s,
+             {"exposure_nominal_ms", "exposure_min_ms", "exposure_max_ms"},
+             "exposure_nominal_ms must lie between exposure_min_ms and exposure_max_ms");
+  in.Require(sheet.exposure_max_s * sheet.rate_max_hz <= 1.0, {"exposure_max_ms", "rate_max_hz"},
+             "exposure_max_ms is longer than a frame at rate_max_hz");
   in.Finish();
+  if (!camera.IsInvertible())
+    throw InputError(yaml.string(), "k1, k2, p1, p2 fold the picture over before its edge",
+                     "a lens that puts each direction at one place of the picture");
   return sheet;
 }
 

@@ -5,6 +5,7 @@
 
 #include "robot/types/car.h"
 #include "robot/types/depth_camera.h"
+#include "robot/types/depth_camera_errors.h"
 #include "robot/types/measurements.h"
 
 namespace merlin {
@@ -14,8 +15,10 @@ namespace merlin {
 // relative paths against the URDF's own folder.
 CarDescription ReadCar(const std::filesystem::path& urdf);
 
-// Throw InputError: unknown key (names the nearest), missing key, value out of range; all faults at once.
+// Throw InputError: unknown key (names the nearest), missing key, value out of range, values that contradict each other; all
+// faults at once, of the sheet and of its errors alike. Errors: the map under the key `errors`, the defaults for what it omits.
 DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml);
+DepthCameraErrors ReadDepthCameraErrors(const std::filesystem::path& yaml);
 ColorCameraSheet ReadColorCameraSheet(const std::filesystem::path& yaml);
 
 }  // namespace merlin

@@ -1,5 +1,7 @@
 #include "robot/twin/twin.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -33,9 +35,9 @@ class TwinDepth final : public DepthCamera {
  public:
   TwinDepth(const TwinOptions& options, const sim::World& world, Worker& worker)
       : info_{options.depth.sheet, options.world.car.T_base_depth, options.depth.rate_hz},
-        camera_(options.depth.sheet, options.depth.effects, options.seed),
-        scene_(world.model(), CarBodies(world)),
-        albedo_(sim::GeomAlbedos(world.model(), options.materials)),
+        camera_(options.depth.sheet, options.depth.errors, options.depth.effects, options.seed),
+        surroundings_(sim::SurroundingsOf(world.model(), options.materials)),
+        scene_(world.model(), CarBodies(world), sim::PanesOf(surroundings_)),
         worker_(worker),
         schedule_(options.depth.rate_hz),
         outbox_(FromSeconds(options.depth.sheet.latency_s)) {
@@ -46,18 +48,24 @@ class TwinDepth final : public DepthCamera {
   void Sample(const sim::World& world) {
     now_ = world.Now();
     if (!schedule_.Due(now_)) return;
-    auto poses = sim::RayScene::Snapshot(world.model(), world.data());
-    const Pose T_world_camera = world.T_world_base() * info_.T_base_camera;
-    outbox_.Put(now_, worker_.Do([this, poses = std::move(poses), T_world_camera, settings = settings_, stamp = now_,
-                                  index = index_++] {
-      scene_.Update(poses);
-      return camera_.Expose(scene_, albedo_, T_world_camera, settings, stamp, index);
+    auto bodies = sim::MotionsOf(world.model(), world.data());
+    const sim::BodyMotion camera = world.BaseMotion().Of(info_.T_base_camera);
+    // Nothing leaves before its last sub-frame is over.
+    const Time out = now_ + FromSeconds(std::max(info_.sheet.latency_s, 0.5 * info_.sheet.ExposureSpan_s(settings_)));
+    outbox_.Put(now_, out, worker_.Do([this, bodies = std::move(bodies), camera, settings = settings_, stamp = now_,
+                                       index = index_++] {
+      return camera_.Expose({scene_, surroundings_, bodies, camera}, settings, stamp, index);
     }));
   }
 
   const DepthCameraInfo& Info() const override { return info_; }
   void Configure(const DepthSettings& settings) override {
     CheckSettings(info_.sheet, settings);
+    const double span_s = info_.sheet.ExposureSpan_s(settings);
+    if (span_s * info_.rate_hz > 1.0 + 1e-9)
+      throw InputError(info_.sheet.name, "the exposure is longer than the time between two frames",
+                       fmt::format("at most {:g} ms at {:g} Hz", 1e3 / info_.rate_hz, info_.rate_hz),
+                       fmt::format("{:g} ms", 1e3 * span_s));
     settings_ = settings;
   }
   std::optional<DepthFrame> Poll() override { return outbox_.Take(now_); }
@@ -66,8 +74,8 @@ class TwinDepth final : public DepthCamera {
  private:
   DepthCameraInfo info_;
   sim::TofCamera camera_;
+  sim::Surroundings surroundings_;
   sim::RayScene scene_;  // touched by the worker's jobs only
-  std::vector<double> albedo_;
   Worker& worker_;
   Schedule schedule_;
   Outbox<DepthFrame> outbox_;
@@ -80,47 +88,41 @@ class TwinColor final : public ColorCamera {
  public:
   TwinColor(const TwinOptions& options, const sim::World& world, Worker& worker)
       : info_{options.color->sheet, options.world.car.T_base_color, options.color->rate_hz},
-        seed_(options.seed),
-        model_(world.model()),
         worker_(worker),
         schedule_(options.color->rate_hz),
         outbox_(FromSeconds(options.color->sheet.latency_s)) {
-    CameraModel& camera = info_.sheet.camera;  // the simulated lens has no distortion yet, and says so
-    camera.k1 = camera.k2 = camera.p1 = camera.p2 = 0.0;
+    Configure(options.color->settings.value_or(DefaultSettings(info_.sheet)));
     // GL belongs to the thread that draws.
-    worker_.Do([this, gl = options.color->gl] {
-             renderer_ = std::make_unique<sim::Renderer>(model_, info_.sheet.camera, gl);
+    worker_.Do([this, model = world.model(), &color = *options.color, seed = options.seed] {
+             camera_ = std::make_unique<sim::ColorCamera>(model, color.sheet, color.gl, seed, color.motion_blur);
            }).get();
   }
   ~TwinColor() override {
-    worker_.Do([this] { renderer_.reset(); }).get();
+    worker_.Do([this] { camera_.reset(); }).get();
   }
 
   void Sample(const sim::World& world) {
     now_ = world.Now();
     if (!schedule_.Due(now_)) return;
-    auto snapshot = std::make_shared<sim::RenderSnapshot>(model_);
-    snapshot->Take(model_, world.data(), world.T_world_base() * info_.T_base_camera, info_.sheet.camera);
-    outbox_.Put(now_, worker_.Do([this, snapshot, stamp = now_, index = index_++] {
-      const CameraModel& camera = info_.sheet.camera;
-      ColorFrame frame{stamp, index, camera.width, camera.height, {}};
-      frame.bgr.resize(3 * static_cast<std::size_t>(camera.width) * camera.height);
-      renderer_->Draw(*snapshot, frame.bgr);
-      sim::AddColorNoise(frame.bgr, info_.sheet, seed_, index);
-      return frame;
+    auto shot = camera_->Take(world.model(), world.data(), world.BaseMotion().Of(info_.T_base_camera));
+    outbox_.Put(now_, worker_.Do([this, shot, settings = settings_, stamp = now_, index = index_++] {
+      return camera_->Expose(*shot, settings, stamp, index);
     }));
   }
 
-  const std::string& gl_name() const { return renderer_->name(); }
+  const std::string& gl_name() const { return camera_->gl_name(); }
   const ColorCameraInfo& Info() const override { return info_; }
+  void Configure(const ColorSettings& settings) override {
+    CheckSettings(info_.sheet, settings);
+    settings_ = settings;
+  }
   std::optional<ColorFrame> Poll() override { return outbox_.Take(now_); }
   DeviceStatus Status() const override { return outbox_.status(); }
 
  private:
   ColorCameraInfo info_;
-  std::uint64_t seed_;
-  const mjModel* model_;
-  std::unique_ptr<sim::Renderer> renderer_;
+  ColorSettings settings_;
+  std::unique_ptr<sim::ColorCamera> camera_;
   Worker& worker_;
   Schedule schedule_;
   Outbox<ColorFrame> outbox_;

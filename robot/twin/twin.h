@@ -21,6 +21,7 @@ namespace merlin {
 struct TwinOptions {
   struct Depth {
     DepthCameraSheet sheet;
+    DepthCameraErrors errors;
     DepthSettings settings;
     sim::TofEffects effects;
     double rate_hz = 20.0;
@@ -28,7 +29,9 @@ struct TwinOptions {
   struct Color {
     ColorCameraSheet sheet;
     double rate_hz = 10.0;
-    sim::Gl gl = sim::Gl::kAuto;  // not kOff
+    sim::Gl gl = sim::Gl::kAuto;            // not kOff
+    std::optional<ColorSettings> settings{};  // none: the sheet's, automatic
+    bool motion_blur = false;
   };
   struct Compass {
     sim::CompassConfig config;
@@ -51,7 +54,7 @@ std::vector<bool> CarBodies(const sim::World& world);
 
 class Twin {
  public:
-  // Throws InputError (room, car, start) and MachineError (no GL).
+  // Throws InputError (room, car, start, settings) and MachineError (no GL).
   explicit Twin(const TwinOptions& options);
   ~Twin();
   Twin(const Twin&) = delete;

@@ -15,14 +15,33 @@ struct CameraModel {
   double cy_px = 0.0;
   double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0;  // OpenCV's first four distortion coefficients
 
-  // Unit vector of pixel (u, v) in the optical frame. Distortion is not inverted: valid for k = p = 0.
+  bool Distorts() const { return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0; }
+
+  // Where the lens puts the direction (x / z, y / z), on the same plane z = 1 (D. C. Brown, "Decentering distortion of
+  // lenses", 1966, as OpenCV's calib3d writes it).
+  Eigen::Vector2d Distort(const Eigen::Vector2d& xy) const;
+  // The direction the lens puts there; its inverse to 1e-12. Of several directions the one that belongs to the field
+  // around the axis; NaN where the lens puts none of that field.
+  Eigen::Vector2d Undistort(const Eigen::Vector2d& distorted_xy) const;
+  // Whether every place of the picture, its pixels' outer edges included, belongs to one direction. A lens model may
+  // fold over: beyond some angle it maps back into the picture.
+  bool IsInvertible() const;
+
+  // Unit vector of pixel (u, v) in the optical frame. NaN where the lens model folds over.
   Eigen::Vector3d Ray(double u, double v) const {
-    return Eigen::Vector3d((u - cx_px) / fx_px, (v - cy_px) / fy_px, 1.0).normalized();
+    Eigen::Vector2d xy((u - cx_px) / fx_px, (v - cy_px) / fy_px);
+    if (Distorts()) xy = Undistort(xy);
+    return Eigen::Vector3d(xy.x(), xy.y(), 1.0).normalized();
   }
-  // Pixel of a point in the optical frame, distortion not applied; z > 0.
+  // Pixel of a point in the optical frame; z > 0. NaN beyond the angle at which the lens model folds over.
   Eigen::Vector2d Project(const Eigen::Vector3d& point_optical) const {
-    return {fx_px * point_optical.x() / point_optical.z() + cx_px, fy_px * point_optical.y() / point_optical.z() + cy_px};
+    if (!Distorts())
+      return {fx_px * point_optical.x() / point_optical.z() + cx_px, fy_px * point_optical.y() / point_optical.z() + cy_px};
+    return ProjectDistorted(point_optical.head<2>() / point_optical.z());
   }
+
+ private:
+  Eigen::Vector2d ProjectDistorted(const Eigen::Vector2d& xy) const;
 };
 
 }  // namespace merlin

@@ -2,32 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
-#include "robot/types/camera_model.h"
+#include "robot/types/color_camera.h"
 #include "robot/types/time.h"
 
 namespace merlin {
-
-// The data sheet of a colour camera (models/cameras/<name>.yaml).
-struct ColorCameraSheet {
-  std::string name;
-  CameraModel camera;
-  double rate_max_hz = 0.0;
-  double latency_s = 0.0;       // from mid-exposure to the stack
-  double read_noise_dn = 0.0;   // one sigma, 8-bit counts
-  double gain_dn_per_e = 0.0;   // shot noise variance of a value v is v * gain
-};
-
-// 8-bit BGR, row-major, three bytes a pixel, as OpenCV has it.
-struct ColorFrame {
-  Time stamp{0};
-  std::uint64_t index = 0;
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> bgr;
-};
 
 // Attitude of the body: rotation about x, y, z (roll, pitch, yaw; R = Rz Ry Rx), yaw counter-clockwise from the world's x axis.
 struct CompassReading {

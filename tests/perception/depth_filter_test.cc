@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,7 +29,7 @@ DepthFrame Wall(double distance_m, double albedo) {
   const std::size_t n = static_cast<std::size_t>(frame.width) * frame.height;
   frame.range_m.assign(n, static_cast<float>(std::fmod(distance_m, UnambiguousRange_m(20e6))));
   frame.amplitude.assign(n, static_cast<float>(900'000.0 * albedo / (distance_m * distance_m)));
-  frame.intensity = frame.amplitude;
+  frame.intensity.assign(n, 0);
   frame.flags.assign(n, 0);
   return frame;
 }
@@ -46,6 +47,27 @@ TEST(DepthFilter, RejectsWallsThatWrapAsGhosts) {
     for (const double albedo : {0.1, 0.35, 0.8, 0.89})
       EXPECT_EQ(Count(FilterDepth(Wall(distance_m, albedo), Sheet(), {}), Rejection::kGhost), 16 * 12)
           << distance_m << " m, albedo " << albedo;
+}
+
+// 20 and 30 MHz: unambiguous to 14.990 m, the range their common divisor of 10 MHz wraps at.
+TEST(DepthFilter, WithTwoFrequenciesKeepsWhatOneWouldCallAGhost) {
+  const auto reasons = [](double distance_m, double albedo, double second_frequency_hz) {
+    DepthFrame frame = Wall(distance_m, albedo);
+    frame.settings.second_frequency_hz = second_frequency_hz;
+    if (second_frequency_hz > 0.0)
+      std::ranges::fill(frame.range_m, static_cast<float>(std::fmod(distance_m, kSpeedOfLight_m_s / 20e6)));
+    return FilterDepth(frame, Sheet(), {});
+  };
+  for (const double albedo : {0.15, 0.35, 0.8}) {
+    for (const double distance_m : {7.6, 9.0, 10.0, 14.0})
+      EXPECT_EQ(Count(reasons(distance_m, albedo, 0.0), Rejection::kGhost), 16 * 12) << distance_m;
+    for (const double distance_m : {1.0, 3.0})
+      EXPECT_EQ(Count(reasons(distance_m, albedo, 30e6), Rejection::kNone), 16 * 12) << distance_m;
+    for (const double distance_m : {15.1, 16.0, 20.0, 29.0, 31.0})
+      EXPECT_EQ(Count(reasons(distance_m, albedo, 30e6), Rejection::kGhost), 16 * 12) << distance_m;
+  }
+  for (const double distance_m : {7.6, 9.0, 10.0, 14.0})
+    EXPECT_EQ(Count(reasons(distance_m, 0.8, 30e6), Rejection::kNone), 16 * 12) << distance_m;
 }
 
 TEST(DepthFilter, KeepsADarkFacingBoxWithinThreeMetres) {

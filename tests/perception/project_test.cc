@@ -92,5 +92,17 @@ TEST(Fuse, ColorsThePointThatFallsOnAPixelAndNoOther) {
   for (int i = 1; i < 4; ++i) EXPECT_FALSE(points[i].has_color) << i;
 }
 
+// x (1 - x^2 / 2): a point at x = 0.7 appears at 0.5285, and one at 1.0 would fold back to 0.5.
+TEST(Fuse, TakesThePixelTheLensPutsThePointOnAndNoneBeyondItsFold) {
+  const CameraModel camera{.width = 4, .height = 2, .fx_px = 4.0, .fy_px = 4.0, .cx_px = 1.0, .cy_px = 0.0, .k1 = -0.5};
+  std::vector<Point> points(2);
+  points[0].position = {0.7f, 0.0f, 1.0f};  // u = 4 * 0.5285 + 1 = 3.1; without the lens 3.8, outside
+  points[1].position = {1.0f, 0.0f, 1.0f};
+  ColorPoints(points, Picture(), camera, Pose::Identity());
+  EXPECT_TRUE(points[0].has_color);
+  EXPECT_EQ(points[0].bgr[0], 3);
+  EXPECT_FALSE(points[1].has_color);
+}
+
 }  // namespace
 }  // namespace merlin

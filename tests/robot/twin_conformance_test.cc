@@ -5,6 +5,7 @@
 
 #include "robot/description/description.h"
 #include "robot/twin/twin.h"
+#include "robot/types/error.h"
 #include "tests/robot/hal/conformance.h"
 #include "tests/sim/car_world.h"
 
@@ -27,9 +28,30 @@ TwinOptions Options(const sim::TemporaryFile& room) {
   return options;
 }
 
+// A small picture of the usual view, through the usual lens.
+TwinOptions::Color SmallColor() {
+  TwinOptions::Color color;
+  color.sheet = ReadColorCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/ccd.yaml");
+  CameraModel& camera = color.sheet.camera;
+  camera.width /= 8, camera.height /= 8;
+  for (double* px : {&camera.fx_px, &camera.fy_px, &camera.cx_px, &camera.cy_px}) *px /= 8.0;
+  return color;
+}
+
+// With colour where this machine can draw.
+TwinOptions WithColor(TwinOptions options) {
+  options.color = SmallColor();
+  try {
+    const Twin twin(options);
+  } catch (const MachineError&) {
+    options.color.reset();
+  }
+  return options;
+}
+
 class RiggedTwin final : public Rigged {
  public:
-  RiggedTwin() : room_("room.xml", sim::Room(kRoom)), twin_(Options(room_)) {}
+  RiggedTwin() : room_("room.xml", sim::Room(kRoom)), twin_(WithColor(Options(room_))) {}
   Robot robot() override { return twin_.robot(); }
   CarDescription car() override { return sim::Merlin(); }
   double wall_ahead_m() override { return kWall_m; }
@@ -64,6 +86,39 @@ TEST(Twin, GivesTheSameFramesForAnyNumberOfThreads) {
       EXPECT_EQ(frames[i].amplitude, first[i].amplitude);
     }
   }
+}
+
+TEST(Twin, GivesTheSameColourForAnyNumberOfThreads) {
+  std::vector<ColorFrame> first;
+  for (const int threads : {1, 2, 3}) {
+    const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
+    TwinOptions options = WithColor(Options(room));
+    if (!options.color) GTEST_SKIP() << "no GL";
+    options.threads = threads;
+    options.color->motion_blur = true;
+    Twin twin(options);
+    Robot robot = twin.robot();
+    std::vector<ColorFrame> frames;
+    robot.drive->Send({.speed_m_s = 0.5, .steering_rad = 0.2, .valid_for = std::chrono::seconds(10)});
+    while (frames.size() < 8) {
+      ASSERT_TRUE(robot.clock->WaitUntil(robot.clock->Now() + std::chrono::milliseconds(50)));
+      while (auto frame = robot.color->Poll()) frames.push_back(*frame);
+    }
+    if (first.empty()) first = frames;
+    for (std::size_t i = 0; i < 8; ++i) {
+      EXPECT_EQ(frames[i].bgr, first[i].bgr) << threads << " threads, frame " << i;
+      EXPECT_EQ(frames[i].settings, first[i].settings);
+    }
+  }
+}
+
+TEST(Twin, ReportsTheLensItSeesThrough) {
+  const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
+  const TwinOptions options = WithColor(Options(room));
+  if (!options.color) GTEST_SKIP() << "no GL";
+  Twin twin(options);
+  EXPECT_EQ(twin.robot().color->Info().sheet.camera.k1, 0.024);
+  EXPECT_EQ(twin.robot().color->Info().sheet.camera.p2, 0.0109);
 }
 
 TEST(Twin, SwitchingTheCompassOffChangesNoDepth) {

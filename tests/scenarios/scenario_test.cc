@@ -49,6 +49,9 @@ TEST(Scenario, NamesTheNearestForUnknownNames) {
   EXPECT_TRUE(Has(message([] { ReadScenario("coridor_loop", {}); }), "'corridor_loop'"));
   EXPECT_TRUE(Has(message([] { RoomFile("corridor"); }), "'corridor_26x21'"));
   EXPECT_TRUE(Has(message([] { CameraFile("pmd_3ks"); }), "'pmd_3k_s'"));
+  EXPECT_TRUE(Has(message([] { CameraFile("ccb"); }), "did you mean 'ccd'"));
+  EXPECT_TRUE(Has(message([] { DepthCameraFile("ccb"); }), "unknown depth camera 'ccb'; did you mean 'camcube_2'"));
+  EXPECT_TRUE(Has(message([] { ColorCameraFile("pmd_3ks"); }), "unknown colour camera 'pmd_3ks'; did you mean 'ccd'"));
   EXPECT_TRUE(Has(message([] { ScenarioFile("/no/such.yaml"); }), "/no/such.yaml"));
 }
 
@@ -82,6 +85,17 @@ TEST(Scenario, TakesNumbersAsTypedAndNoKeyTwice) {
   const auto file = folder.path() / "s.yaml";
   std::ofstream(file) << "room: hall\nseed: 010\n";
   EXPECT_EQ(ReadScenario(file.string(), {}).seed, 10u);
+}
+
+TEST(Scenario, KnowsAnOpenAndAClosedCurtain) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "s.yaml";
+  std::ofstream(file) << "room: hall\n";
+  EXPECT_EQ(ReadScenario(file.string(), {}).curtain, "open");
+  EXPECT_EQ(ReadScenario(file.string(), {"curtain=closed"}).curtain, "closed");
+  EXPECT_TRUE(Has(ToYaml(ReadScenario(file.string(), {"curtain=closed"})), "curtain: closed"));
+  EXPECT_TRUE(Has(Complaint("room: hall\ncurtain: shut\n"), "curtain: expected open or closed, got 'shut'"));
+  EXPECT_TRUE(Has(Complaint("room: hall\ncurtain: [open]\n"), "s.yaml:2: curtain: expected a text"));
 }
 
 TEST(Scenario, FindsFilesBesideItselfFromAnyFolder) {

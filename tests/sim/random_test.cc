@@ -147,5 +147,13 @@ TEST(Random, PoissonOfZeroIsZero) {
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(random.Poisson(0.0), 0.0);
 }
 
+TEST(Philox, FourBlocksAtOnceAreTheFourBlocks) {
+  const std::array<std::uint32_t, 2> key{0xDEADBEEF, 7};
+  for (const std::uint32_t first : {0u, 12u, 0xFFFFFFFEu}) {  // the last wraps, in its own word
+    const auto blocks = Philox4x32Quad({3, first, 5, 0x200}, key);
+    for (std::uint32_t i = 0; i < 4; ++i) EXPECT_EQ(blocks[i], Philox4x32({3, first + i, 5, 0x200}, key)) << first << " " << i;
+  }
+}
+
 }  // namespace
 }  // namespace merlin::sim

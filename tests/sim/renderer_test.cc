@@ -12,14 +12,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "robot/types/error.h"
-#include "sim/color_camera.h"
 
 namespace merlin::sim {
 namespace {
@@ -268,83 +266,6 @@ TEST_F(RendererTest, SaysSoWhenTheProcessDrawsWithTheOtherBackEnd) {
   const Gl other = renderer.name().starts_with("EGL") ? Gl::kOsmesa : Gl::kEgl;
   EXPECT_THROW(Renderer(scene->model, kSkew, other), MachineError);
   EXPECT_NO_THROW(Renderer(scene->model, kSkew, Gl::kAuto));
-}
-
-const ColorCameraSheet kNoisy{.name = "test", .camera = kCcd, .read_noise_dn = 1.2, .gain_dn_per_e = 0.05};
-
-double Phi(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
-
-TEST(ColorNoise, HasTheMeanVarianceAndShapeOfItsFormula) {
-  const std::size_t count = 640 * 480 * 3;
-  for (const int value : {0, 3, 60, 200, 255}) {
-    Picture bgr(count, static_cast<std::uint8_t>(value));
-    AddColorNoise(bgr, kNoisy, 7, 3);
-    std::array<double, 256> share{};
-    for (const std::uint8_t v : bgr) share[v] += 1.0 / count;
-    // A normal distribution, rounded, its ends clipped into 0 and 255.
-    const double sigma = std::sqrt(value * 0.05 + 1.2 * 1.2);
-    double mean = 0.0, variance = 0.0, expected_mean = 0.0;
-    for (int v = 0; v < 256; ++v) {
-      const double below = v == 0 ? 0.0 : Phi((v - 0.5 - value) / sigma);
-      const double above = v == 255 ? 1.0 : Phi((v + 0.5 - value) / sigma);
-      // Five standard errors, and two of the 4096 values the distribution is made of.
-      EXPECT_NEAR(share[v], above - below, 5.0 * std::sqrt((above - below) / count) + 2.0 / 4096)
-          << value << " -> " << v;
-      mean += v * share[v];
-      expected_mean += v * (above - below);
-    }
-    for (int v = 0; v < 256; ++v) variance += (v - mean) * (v - mean) * share[v];
-    EXPECT_NEAR(mean, expected_mean, 5.0 * sigma / std::sqrt(count) + 1e-3);
-    if (value == 60 || value == 200) {  // nothing is clipped; rounding adds 1/12
-      const double expected = value * 0.05 + 1.2 * 1.2 + 1.0 / 12.0;
-      EXPECT_NEAR(variance, expected, 5.0 * expected * std::sqrt(2.0 / count));
-    }
-  }
-}
-
-TEST(ColorNoise, IsFixedBySeedFrameAndPixel) {
-  const Picture grey(3000, 120);
-  Picture a = grey, b = grey, seed = grey, frame = grey, late = grey, part(1003, 120), empty;
-  AddColorNoise(a, kNoisy, 1, 5);
-  AddColorNoise(b, kNoisy, 1, 5);
-  AddColorNoise(seed, kNoisy, 2, 5);
-  AddColorNoise(frame, kNoisy, 1, 6);
-  AddColorNoise(late, kNoisy, 1, 5 + (1ULL << 32));
-  AddColorNoise(part, kNoisy, 1, 5);
-  AddColorNoise(empty, kNoisy, 1, 5);
-  EXPECT_EQ(a, b);
-  EXPECT_NE(a, seed);
-  EXPECT_NE(a, frame);
-  EXPECT_NE(a, late);
-  EXPECT_TRUE(std::equal(part.begin(), part.end(), a.begin()));
-  EXPECT_TRUE(empty.empty());
-}
-
-TEST(ColorNoise, OfNeighboursAndOfFramesIsUncorrelated) {
-  const int count = 300'000;
-  Picture now(count, 120), next(count, 120);
-  AddColorNoise(now, kNoisy, 1, 5);
-  AddColorNoise(next, kNoisy, 1, 6);
-  const double variance = 120 * 0.05 + 1.2 * 1.2 + 1.0 / 12.0;
-  const double five_sigma = 5.0 / std::sqrt(count);
-  for (const int step : {1, 2, 3, 8, 1920}) {
-    double sum = 0.0;
-    for (int i = 0; i + step < count; ++i) sum += (now[i] - 120.0) * (now[i + step] - 120.0);
-    EXPECT_NEAR(sum / count / variance, 0.0, five_sigma) << step;
-  }
-  double across = 0.0;
-  for (int i = 0; i < count; ++i) across += (now[i] - 120.0) * (next[i] - 120.0);
-  EXPECT_NEAR(across / count / variance, 0.0, five_sigma);
-}
-
-TEST(ColorNoise, OfAPerfectCameraIsNone) {
-  Picture bgr(256);
-  for (int i = 0; i < 256; ++i) bgr[i] = static_cast<std::uint8_t>(i);
-  const Picture before = bgr;
-  ColorCameraSheet perfect;
-  perfect.camera = kCcd;
-  AddColorNoise(bgr, perfect, 1, 1);
-  EXPECT_EQ(bgr, before);
 }
 
 }  // namespace

@@ -118,6 +118,28 @@ TEST_P(HalConformance, RefusesSettingsOutsideTheSheet) {
   EXPECT_THROW(session.robot.depth->Configure({std::nan(""), sheet.frequencies_hz[0]}), InputError);
 }
 
+TEST_P(HalConformance, RefusesColourSettingsOutsideTheSheet) {
+  Session session(GetParam());
+  if (session.robot.color == nullptr) GTEST_SKIP() << "no colour camera";
+  const ColorCameraSheet& sheet = session.robot.color->Info().sheet;
+  EXPECT_THROW(session.robot.color->Configure({.exposure_s = 2.0 * sheet.exposure_max_s}), InputError);
+  EXPECT_THROW(session.robot.color->Configure({.exposure_s = std::nan("")}), InputError);
+  EXPECT_THROW(session.robot.color->Configure({.exposure_s = sheet.exposure_min_s, .gain = 0.5}), InputError);
+  EXPECT_THROW(session.robot.color->Configure({.exposure_s = sheet.exposure_min_s, .white_balance_red = 0.0}), InputError);
+}
+
+TEST_P(HalConformance, UsesNewColourSettingsAndReportsThem) {
+  Session session(GetParam());
+  if (session.robot.color == nullptr) GTEST_SKIP() << "no colour camera";
+  const ColorCameraSheet sheet = session.robot.color->Info().sheet;
+  const ColorSettings settings{.exposure_s = 2.0 * sheet.exposure_min_s, .auto_exposure = false};
+  session.robot.color->Configure(settings);
+  session.Drive(1.0, std::nullopt);
+  ASSERT_FALSE(session.color.empty());
+  EXPECT_EQ(session.color.back().settings, settings);
+  EXPECT_EQ(session.color.back().bgr.size(), 3 * static_cast<std::size_t>(sheet.camera.width) * sheet.camera.height);
+}
+
 TEST_P(HalConformance, UsesNewSettingsFromTheNextExposureOn) {
   Session session(GetParam());
   const DepthCameraSheet sheet = session.robot.depth->Info().sheet;
