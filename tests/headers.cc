@@ -1,0 +1,1 @@
+// No code: its target carries the precompiled header that all tests share.
