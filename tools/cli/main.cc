@@ -24,7 +24,9 @@ int Main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = kPass;
   AddRun(app, exit_code);
+  AddCamera(app, exit_code);
   AddList(app, exit_code);
+  AddBench(app, exit_code);
   AddDoctor(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,19 @@
+// What a measurement says, for people and for machines.
+#pragma once
+
+#include <string>
+
+#include "tools/camera/measure.h"
+
+namespace merlin {
+
+// Keys: model, settings{...}, center{range_mean_m, range_sigma_m, samples}, middle{same}, valid_share, saturated_share,
+// amplitude_mean, frame_ms; null where there are too few samples. effects: as the user named them.
+std::string ToJson(const Measurement& measurement, const Shooting& shooting, const std::string& effects);
+
+// "20 frames of 1000 us at 20 + 30 MHz, effects all, seed 1".
+std::string SettingsLine(const Shooting& shooting, const std::string& effects);
+
+std::string Summary(const Measurement& measurement);
+
+}  // namespace merlin

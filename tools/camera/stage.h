@@ -1,0 +1,59 @@
+// What the camera is put before: a wall of its own world, a room of ours, or a scene built for one experiment.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/types/se3.h"
+#include "sim/materials.h"
+#include "sim/motion.h"
+#include "sim/ray_scene.h"
+#include "sim/tof/surroundings.h"
+#include "sim/tof/tof_camera.h"
+
+namespace merlin {
+
+// x forward, y left, z up to z forward, x right, y down (REP 103).
+Pose BodyOptical();
+
+struct Stage {
+  std::unique_ptr<mjModel, void (*)(mjModel*)> model{nullptr, mj_deleteModel};
+  sim::Surroundings surroundings;
+  sim::BodyMotions bodies;
+  std::unique_ptr<sim::RayScene> scene;
+  Pose T_world_optical = BodyOptical();
+
+  sim::TofView View(const Eigen::Vector3d& velocity_world_m_s = {0, 0, 0}) const {
+    return {*scene, surroundings, bodies, {T_world_optical, velocity_world_m_s, {0, 0, 0}}};
+  }
+};
+
+// The geoms of a <worldbody>, in their order, and what they are made of; the camera's body frame is the world's.
+Stage BuildStage(const std::string& geoms, const std::vector<sim::Material>& material);
+
+struct Wall {
+  double distance_m = 2.0;  // optical z of its surface on the axis
+  double albedo = 0.5;
+  double tilt_rad = 0.0;  // about the vertical
+  double ambient_w_m2_nm = 0.0;
+};
+// Throws InputError for a number outside its range: distance_m (0, 1000], albedo [0, 1], tilt +-89 degrees, ambient >=
+// 0.
+Stage WallStage(const Wall& wall);
+
+struct RoomView {
+  std::filesystem::path room, materials;
+  bool curtain_closed = false;
+  Pose T_world_body = Pose::Identity();  // of the camera: x forward, y left, z up
+  std::optional<double> sun_w_m2_nm{};     // instead of the room's
+};
+// Throws InputError: a room or materials file that cannot be used, nothing to see in it, a camera inside a geom, a sun
+// set where the room has none.
+Stage RoomStage(const RoomView& view);
+
+}  // namespace merlin

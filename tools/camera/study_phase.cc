@@ -1,0 +1,72 @@
+// What distorts the phase of a single surface: harmonics, and motion between the sub-frames.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tools/camera/study_parts.h"
+
+namespace merlin::study {
+namespace {
+
+constexpr double kWall_m = 12.0;
+
+StudyCamera OnePixel(StudyCamera camera) {
+  camera.sheet = Cropped(camera.sheet, 1, 1);
+  camera.settings.second_frequency_hz = 0.0;
+  return camera;
+}
+
+// Measured less true range at this distance from the wall.
+double Error_m(const StudyCamera& camera, const sim::TofEffects& effects, Stage& wall, double distance_m,
+               double speed_away_m_s) {
+  wall.T_world_optical.translation().x() = kWall_m - distance_m;
+  const Measurement frame = OneFrame(camera, effects, wall.View({-speed_away_m_s, 0.0, 0.0}));
+  return UnwrapNear(MiddleRange_m(frame) - distance_m, 0.0, UnambiguousRange_m(camera.settings));
+}
+
+}  // namespace
+
+Figure Wiggling(const StudyCamera& of) {
+  const StudyCamera camera = OnePixel(of);
+  const double wrap_m = UnambiguousRange_m(camera.settings);
+  Stage wall = WallStage({.distance_m = kWall_m});
+  Series law{.name = "closed form", .color = 0};
+  Series raw{.name = "before calibration", .dots = true, .color = 0},
+      rest{.name = "after calibration", .dots = true, .color = 1};
+  // Of the odd harmonics four samples leave -(a3 - a5) sin(4 phi), to first order.
+  const double size_rad = camera.errors.harmonic_3 - camera.errors.harmonic_5;
+  for (const double d : Steps(0.02, wrap_m, 300))
+    law.Add(d, -1e3 * RangeOf_m(camera, size_rad * std::sin(4.0 * Phase_rad(camera, d))));
+  for (const double d : Steps(0.02, wrap_m - 0.02, 90)) {
+    raw.Add(d, 1e3 * Error_m(camera, Only({&sim::TofEffects::wiggling}, false), wall, d, 0.0));
+    rest.Add(d, 1e3 * Error_m(camera, Only({&sim::TofEffects::wiggling}, true), wall, d, 0.0));
+  }
+  return {"wiggling: range error over distance",
+          fmt::format("{:g} MHz, a3 = {:g}, a5 = {:g}; period a quarter of the unambiguous {:.3f} m",
+                      camera.settings.frequency_hz * 1e-6, camera.errors.harmonic_3, camera.errors.harmonic_5, wrap_m),
+          {{.x = {"distance [m]"}, .y = {"measured less true range [mm]"}, .series = {law, raw, rest}}}};
+}
+
+Figure Motion(const StudyCamera& of) {
+  const StudyCamera camera = OnePixel(of);
+  const double step_s = camera.settings.integration_s + camera.sheet.readout_s;
+  Stage wall = WallStage({.distance_m = kWall_m});
+  Panel panel{.x = {"distance at mid-exposure [m]"}, .y = {"measured less true range [mm]"}};
+  int color = 0;
+  for (const double speed_m_s : {0.5, 1.0, 2.0}) {
+    Series law{.name = fmt::format("(v Dt / 2) cos 2 phi, {:g} m/s", speed_m_s), .color = color};
+    Series dots{.name = "samples, moving away", .dots = true, .color = color++};
+    for (const double d : Steps(0.5, 5.0, 200))
+      law.Add(d, 1e3 * 0.5 * speed_m_s * step_s * std::cos(2.0 * Phase_rad(camera, d)));
+    for (const double d : Steps(0.5, 5.0, 46))
+      dots.Add(d, 1e3 * Error_m(camera, Only({&sim::TofEffects::motion}), wall, d, speed_m_s));
+    panel.series.push_back(law);
+    panel.series.push_back(dots);
+  }
+  return {"motion along the axis: range error over distance",
+          fmt::format("{:g} MHz, sub-frames {:g} ms apart", camera.settings.frequency_hz * 1e-6, 1e3 * step_s),
+          {panel}};
+}
+
+}  // namespace merlin::study
