@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -23,16 +25,24 @@ bool IsVisible(const mjModel* model, int geom) {
   return model->geom_group[geom] >= 0 && model->geom_group[geom] <= 2 && alpha > 0.0f;
 }
 
+RayFace FaceThrough(const RayGroup& group, int geom, unsigned a, unsigned b, unsigned c) {
+  const Eigen::Vector3d p = group.vertices[a].cast<double>();
+  const Eigen::Vector3d normal =
+      (group.vertices[b].cast<double>() - p).cross(group.vertices[c].cast<double>() - p).normalized();
+  return {geom, normal, normal.dot(p)};
+}
+
 void AddQuad(RayGroup& group, int geom, unsigned a, unsigned b, unsigned c, unsigned d) {
   group.triangles.push_back({a, b, c});
   group.triangles.push_back({a, c, d});
-  group.geom_of_triangle.insert(group.geom_of_triangle.end(), 2, geom);
+  group.face_of_triangle.insert(group.face_of_triangle.end(), 2, static_cast<int>(group.faces.size()));
+  group.faces.push_back(FaceThrough(group, geom, a, b, c));
 }
 
-void AddPlane(RayGroup& group, int geom, const mjtNum* size) {
-  const float x = static_cast<float>(size[0] > 0.0 ? size[0] : kInfinitePlane_m);
-  const float y = static_cast<float>(size[1] > 0.0 ? size[1] : kInfinitePlane_m);
-  group.vertices = {{-x, -y, 0.0f}, {x, -y, 0.0f}, {x, y, 0.0f}, {-x, y, 0.0f}};
+void AddPlane(RayGroup& group, int geom, const mjtNum* size, const Pose& T_group_geom) {
+  const double x = size[0] > 0.0 ? size[0] : kInfinitePlane_m, y = size[1] > 0.0 ? size[1] : kInfinitePlane_m;
+  for (const Eigen::Vector3d& corner : {Eigen::Vector3d(-x, -y, 0), {x, -y, 0}, {x, y, 0}, {-x, y, 0}})
+    group.vertices.push_back((T_group_geom * corner).cast<float>());
   group.one_sided = true;
   AddQuad(group, geom, 0, 1, 2, 3);
 }
@@ -58,11 +68,20 @@ void AddMesh(RayGroup& group, const mjModel* model, int geom, const Pose& T_grou
     const Eigen::Map<const Eigen::Vector3f> vertex(model->mesh_vert + 3 * (model->mesh_vertadr[mesh] + i));
     group.vertices.push_back((T_group_geom * vertex.cast<double>()).cast<float>());
   }
+  // Of one face: normals within 1e-5, offsets within 0.1 mm (two that a rounding parts only cost time).
+  std::map<std::array<long, 4>, int> known;
   for (int i = 0; i < model->mesh_facenum[mesh]; ++i) {
-    const int* face = model->mesh_face + 3 * (model->mesh_faceadr[mesh] + i);
-    const auto vertex = [&](int corner) { return first + static_cast<unsigned>(face[corner]); };
+    const int* corners = model->mesh_face + 3 * (model->mesh_faceadr[mesh] + i);
+    const auto vertex = [&](int corner) { return first + static_cast<unsigned>(corners[corner]); };
     group.triangles.push_back({vertex(0), vertex(1), vertex(2)});
-    group.geom_of_triangle.push_back(geom);
+    const RayFace face = FaceThrough(group, geom, vertex(0), vertex(1), vertex(2));
+    const Eigen::Vector3d rounded = 1e5 * face.normal;
+    const auto [found, is_new] =
+        known.try_emplace({std::lround(rounded.x()), std::lround(rounded.y()), std::lround(rounded.z()),
+                           std::lround(1e4 * face.offset_m)},
+                          static_cast<int>(group.faces.size()));
+    if (is_new) group.faces.push_back(face);
+    group.face_of_triangle.push_back(found->second);
   }
 }
 
@@ -78,7 +97,7 @@ void AddGeom(RayGroup& group, const mjModel* model, int geom, const Pose& T_grou
   const mjtNum* size = model->geom_size + 3 * geom;
   switch (model->geom_type[geom]) {
     case mjGEOM_PLANE:
-      return AddPlane(group, geom, size);
+      return AddPlane(group, geom, size, T_group_geom);
     case mjGEOM_BOX:
       return AddBox(group, geom, size, T_group_geom);
     case mjGEOM_MESH:
@@ -146,11 +165,13 @@ std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& s
       RayGroup& made = groups.emplace_back();
       made.body = body;
       made.panes = pane;
+      made.fixed = body == 0 && (!plane || T_body_geom.linear().row(2).isApprox(Eigen::RowVector3d::UnitZ(), 0.0));
       if (!plane) of_body = &made;
     }
     RayGroup& group = plane ? groups.back() : *of_body;
-    if (plane) group.T_body_group = T_body_geom;
-    AddGeom(group, model, geom, plane ? Pose::Identity() : T_body_geom);
+    const bool own_frame = plane && !group.fixed;
+    if (own_frame) group.T_body_group = T_body_geom;
+    AddGeom(group, model, geom, own_frame ? Pose::Identity() : T_body_geom);
   }
   return groups;
 }

@@ -24,17 +24,26 @@ struct CurvedGeom {
 // Half edges [m], in the geom's frame, of the smallest box around it.
 Eigen::Vector3d HalfEdges(const CurvedGeom& curved);
 
+// A plane that triangles of one geom share; in the group's frame.
+struct RayFace {
+  int geom = -1;
+  Eigen::Vector3d normal{0, 0, 0};  // unit
+  double offset_m = 0.0;            // normal . p of its points
+};
+
 // Geoms that move together. Flat ones are triangles in float; the frame is the body's (statics: the world's; a plane:
 // its own, so that its far corners cost no precision).
 struct RayGroup {
   int body = 0;
   Pose T_body_group = Pose::Identity();
   bool one_sided = false;  // a plane: MuJoCo's are seen from above only
+  bool fixed = false;      // stands for good, and its frame is the world's
   bool panes = false;      // geoms that can be looked through
 
   std::vector<Eigen::Vector3f> vertices;
   std::vector<std::array<unsigned, 3>> triangles;
-  std::vector<int> geom_of_triangle;
+  std::vector<RayFace> faces;
+  std::vector<int> face_of_triangle;  // index into faces
   std::vector<CurvedGeom> curved;
 };
 
@@ -43,7 +52,8 @@ Pose ToPose(const mjtNum* position, const mjtNum* quaternion_wxyz);
 // T_world_body of every body before anything has moved.
 std::vector<Pose> ReferencePoses(const mjModel* model);
 
-// One group of all statics, one for each body that moves, the same again for panes, one for each plane; without the
+// One group of all statics, one for each body that moves, the same again for panes, one for each plane (in the world's
+// frame if it is fixed and level: then its far corners cost no precision there either); without the
 // geoms of bodies for which skip_body is true. is_pane: by geom, empty for none. Throws InputError for a geom of a type
 // that is neither flat nor curved (height field, SDF).
 std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& skip_body,

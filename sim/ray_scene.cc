@@ -131,10 +131,7 @@ void Attach(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned nu
   if (!group.curved.empty()) AttachCurved(device, scene, group, CurvedId(number));
 }
 
-// What stands where it is for good is part of the top scene itself: one level less for most rays.
-bool IsFixed(const RayGroup& group) { return group.body == 0 && !group.one_sided; }
-
-// Any other group is a scene of its own, and where it stands.
+// A group that moves, or has a frame of its own: a scene of its own, and where it stands.
 struct Instance {
   const RayGroup* group;
   Scene scene;
@@ -154,13 +151,13 @@ struct Instance {
   }
 
   // False: it stands there already.
-  bool Place(const Pose& T_world_body) {
-    const Eigen::Matrix4f T_world_group = (T_world_body * group->T_body_group).matrix().cast<float>();
-    if (placed && T_world_group == T_world_group_last) return false;
+  bool Place(const Pose& T_world_group) {
+    const Eigen::Matrix4f matrix = T_world_group.matrix().cast<float>();
+    if (placed && matrix == T_world_group_last) return false;
     placed = true;
-    T_world_group_last = T_world_group;
-    R_world_group = T_world_group.topLeftCorner<3, 3>();
-    rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, T_world_group.data());
+    T_world_group_last = matrix;
+    R_world_group = matrix.topLeftCorner<3, 3>();
+    rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, matrix.data());
     rtcCommitGeometry(geometry.get());
     return true;
   }
@@ -203,37 +200,61 @@ RTCIntersectContext CoherentContext() {
 
 }  // namespace
 
+// What is fixed is one scene of best quality, all of triangles of one kind; what moves is another, of instances: most
+// rooms have nothing in it, and their rays then meet one hierarchy only.
 struct RayScene::Impl {
   std::deque<RayGroup> groups;  // Embree keeps their addresses
   Device device{rtcNewDevice(kDeviceConfig)};
   std::map<unsigned, Instance> instances;  // by the group's number
-  std::vector<bool> moves;                 // [geom id]
-  Scene top;
-  bool fresh = true;  // never committed
+  std::vector<int> first_face;             // of a group
+  std::vector<Face> faces;
+  Scene fixed, moving;
+  bool has_instances = false, fresh = true;  // fresh: never committed
 
   Impl(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane)
       : groups(GroupGeoms(model, skip_body, is_pane)) {
     if (!device) throw MachineError("ray casting: Embree cannot be started on this machine");
-    const bool moving = std::ranges::any_of(groups, [](const RayGroup& group) { return group.body != 0; });
-    const int flags = moving ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST;
-    top = NewScene(device.get(), static_cast<RTCSceneFlags>(flags));
+    fixed = NewScene(device.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(fixed.get(), RTC_BUILD_QUALITY_HIGH);
+    moving = NewScene(device.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
     for (unsigned number = 0; number < groups.size(); ++number) {
-      if (IsFixed(groups[number])) {
-        Attach(device.get(), top.get(), groups[number], number);
+      const RayGroup& group = groups[number];
+      first_face.push_back(static_cast<int>(faces.size()));
+      faces.resize(faces.size() + group.faces.size());
+      if (group.fixed) {
+        Attach(device.get(), fixed.get(), group, number);
+        SetFaces(number, Pose::Identity());
         continue;
       }
-      const Instance& made = instances.try_emplace(number, device.get(), groups[number], number).first->second;
-      rtcAttachGeometryByID(top.get(), made.geometry.get(), CurvedId(static_cast<unsigned>(groups.size())) + number);
+      const Instance& made = instances.try_emplace(number, device.get(), group, number).first->second;
+      rtcAttachGeometryByID(moving.get(), made.geometry.get(), number);
     }
-    for (int geom = 0; geom < model->ngeom; ++geom)
-      moves.push_back(model->body_weldid[model->geom_bodyid[geom]] != 0);
+    has_instances = !instances.empty();
+    rtcCommitScene(fixed.get());
   }
 
-  void Commit() {
-    rtcCommitScene(top.get());
-    if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) {
-      throw MachineError("ray casting: Embree could not build its scene");
+  void SetFaces(unsigned number, const Pose& T_world_group) {
+    std::size_t to = static_cast<std::size_t>(first_face[number]);
+    for (const RayFace& face : groups[number].faces) {
+      const Eigen::Vector3d normal = T_world_group.linear() * face.normal;
+      faces[to++] = {face.geom, normal.cast<float>(),
+                     static_cast<float>(face.offset_m + normal.dot(T_world_group.translation()))};
     }
+  }
+
+  void Update(const BodyMotions& bodies, double dt_s) {
+    bool moved = std::exchange(fresh, false);
+    for (auto& [number, instance] : instances) {
+      const RayGroup& group = groups[number];
+      const Pose T_world_group = bodies[static_cast<std::size_t>(group.body)].At(dt_s) * group.T_body_group;
+      if (!instance.Place(T_world_group)) continue;
+      SetFaces(number, T_world_group);
+      moved = true;
+    }
+    if (!moved) return;
+    rtcCommitScene(moving.get());
+    if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE)
+      throw MachineError("ray casting: Embree could not build its scene");
   }
 
   RayHit ReadHit(const RTCRayHit8& packet, std::size_t i, const Eigen::Vector3f& direction_world) const {
@@ -241,12 +262,21 @@ struct RayScene::Impl {
     if (hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) return {};
     const unsigned number = GroupOf(hit.geomID[i]);
     const RayGroup& group = groups[number];
-    Eigen::Vector3f normal(hit.Ng_x[i], hit.Ng_y[i], hit.Ng_z[i]);
-    if (!IsFixed(group)) normal = instances.at(number).R_world_group * normal;
-    normal.normalize();
-    return {.range_m = packet.ray.tfar[i],
-            .geom = IsCurved(hit.geomID[i]) ? group.curved[hit.primID[i]].geom : group.geom_of_triangle[hit.primID[i]],
-            .normal = normal.dot(direction_world) > 0.0f ? Eigen::Vector3f(-normal) : normal};
+    RayHit read{.range_m = packet.ray.tfar[i]};
+    if (IsCurved(hit.geomID[i])) {
+      read.geom = group.curved[hit.primID[i]].geom;
+      read.face = kCurvedFace;
+      read.normal = Eigen::Vector3f(hit.Ng_x[i], hit.Ng_y[i], hit.Ng_z[i]);
+      if (!group.fixed) read.normal = instances.at(number).R_world_group * read.normal;
+      read.normal.normalize();
+    } else {
+      read.face = first_face[number] + group.face_of_triangle[hit.primID[i]];
+      const Face& face = faces[static_cast<std::size_t>(read.face)];
+      read.geom = face.geom;
+      read.normal = face.normal;
+    }
+    if (read.normal.dot(direction_world) > 0.0f) read.normal = -read.normal;
+    return read;
   }
 };
 
@@ -257,14 +287,15 @@ RayScene::RayScene(const mjModel* model, const std::vector<bool>& skip_body, con
 
 RayScene::~RayScene() = default;
 
-bool RayScene::Moves(int geom) const { return impl_->moves[static_cast<std::size_t>(geom)]; }
-
-void RayScene::Update(const BodyMotions& bodies, double dt_s) {
-  bool moved = std::exchange(impl_->fresh, false);
-  for (auto& [number, instance] : impl_->instances)
-    moved |= instance.Place(bodies[static_cast<std::size_t>(instance.group->body)].At(dt_s));
-  if (moved) impl_->Commit();
+bool RayScene::Moves(const BodyMotions& bodies) const {
+  return std::ranges::any_of(impl_->groups, [&](const RayGroup& group) {
+    return !bodies[static_cast<std::size_t>(group.body)].still();
+  });
 }
+
+const std::vector<Face>& RayScene::faces() const { return impl_->faces; }
+
+void RayScene::Update(const BodyMotions& bodies, double dt_s) { impl_->Update(bodies, dt_s); }
 
 void RayScene::Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes) const {
   assert(rays.size() == hits.size());
@@ -276,7 +307,8 @@ void RayScene::Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes pan
     Fill(packet.ray, some, panes);
     std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect8(lanes.valid, impl_->top.get(), &context, &packet);
+    rtcIntersect8(lanes.valid, impl_->fixed.get(), &context, &packet);
+    if (impl_->has_instances) rtcIntersect8(lanes.valid, impl_->moving.get(), &context, &packet);
     for (std::size_t i = 0; i < some.size(); ++i) hits[first + i] = impl_->ReadHit(packet, i, some[i].direction);
   }
 }
@@ -289,7 +321,8 @@ void RayScene::Occluded(std::span<const Ray> rays, std::span<std::uint8_t> block
     const Lanes lanes(some.size());
     RTCRay8 packet;
     Fill(packet, some, panes);
-    rtcOccluded8(lanes.valid, impl_->top.get(), &context, &packet);
+    rtcOccluded8(lanes.valid, impl_->fixed.get(), &context, &packet);
+    if (impl_->has_instances) rtcOccluded8(lanes.valid, impl_->moving.get(), &context, &packet);
     for (std::size_t i = 0; i < some.size(); ++i) blocked[first + i] = packet.tfar[i] < 0.0f;
   }
 }

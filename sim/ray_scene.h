@@ -15,10 +15,20 @@
 
 namespace merlin::sim {
 
+constexpr int kNoFace = -1, kCurvedFace = -2;
+
 struct RayHit {
   float range_m = -1.0f;            // along the unit direction; negative: nothing within reach
   int geom = -1;                    // MuJoCo geom id
+  int face = kNoFace;               // number of the plane that was met; kCurvedFace: no plane
   Eigen::Vector3f normal{0, 0, 0};  // unit, world frame, facing the ray's origin
+};
+
+// A plane of one geom, as it stands in the world.
+struct Face {
+  int geom = -1;
+  Eigen::Vector3f normal{0, 0, 0};  // unit
+  float offset_m = 0.0f;            // normal . p of its points
 };
 
 struct Ray {
@@ -46,8 +56,10 @@ class RayScene {
   void Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes = Panes::kSeen) const;
   // blocked[i] = 1 where ray i meets anything before its max_range_m.
   void Occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Panes panes) const;
-  // Does this geom move against the world?
-  bool Moves(int geom) const;
+  // What the faces of hits are, where the last Update put them.
+  const std::vector<Face>& faces() const;
+  // Does anything that can be seen move?
+  bool Moves(const BodyMotions& bodies) const;
 
  private:
   struct Impl;

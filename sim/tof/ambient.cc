@@ -1,7 +1,10 @@
 #include "sim/tof/ambient.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "sim/parallel.h"
 
@@ -67,8 +70,56 @@ void ForLitSubRays(const Optics& optics, const MidHits& mid, int row, const Take
   const std::size_t n = static_cast<std::size_t>(optics.per_pixel), width = static_cast<std::size_t>(optics.width);
   for (std::size_t p = static_cast<std::size_t>(row) * width; p < (static_cast<std::size_t>(row) + 1) * width; ++p) {
     for (std::size_t s = 0; s < n; ++s)
-      if (mid.mixed[p] || s == n / 2) take(p, p * n + s, mid.mixed[p] ? 1.0f / static_cast<float>(n) : 1.0f);
+      if (mid.mixed[p] || s == n / 2) take(p, optics.SubRay(p, s), mid.mixed[p] ? 1.0f / static_cast<float>(n) : 1.0f);
   }
+}
+
+// One sub-ray of each face that a pixel sees, the nearest to its middle.
+void AddOneOfEachFace(const Optics& optics, const MidHits& mid, std::size_t pixel, std::vector<std::size_t>& sub_rays) {
+  constexpr std::array<std::size_t, 9> kFromTheMiddle{4, 1, 3, 5, 7, 0, 2, 6, 8};
+  const std::size_t first_of_pixel = sub_rays.size();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(optics.per_pixel); ++k) {
+    const std::size_t i = optics.SubRay(pixel, optics.per_pixel == 1 ? 0 : kFromTheMiddle[k]);
+    const auto same = [&](std::size_t other) { return mid.hits[other].face == mid.hits[i].face; };
+    if (mid.hits[i].geom >= 0 &&
+        std::none_of(sub_rays.begin() + static_cast<std::ptrdiff_t>(first_of_pixel), sub_rays.end(), same))
+      sub_rays.push_back(i);
+  }
+}
+
+// [sub-ray of these] bit b: something stands between it and board b.
+std::vector<std::uint8_t> BoardsBlocked(const RayScene& scene, const Optics& optics, const MidHits& mid,
+                                        std::span<const std::size_t> sub_rays) {
+  std::vector<std::uint8_t> bits(sub_rays.size(), 0), blocked(sub_rays.size());
+  for (std::size_t b = 0; b < optics.boards.size(); ++b) {
+    const Eigen::Vector3f lamp = (mid.T_world_camera * optics.boards[b].position.cast<double>()).cast<float>();
+    std::vector<Ray> rays;
+    for (const std::size_t i : sub_rays) {
+      const LitPoint from{mid.Point(i), mid.hits[i].normal};
+      const Eigen::Vector3f way = lamp - from.point;
+      rays.push_back(RayFrom(from, way.normalized(), way.norm()));
+    }
+    scene.Occluded(rays, blocked, Panes::kLookedThrough);
+    for (std::size_t r = 0; r < bits.size(); ++r) bits[r] |= static_cast<std::uint8_t>(blocked[r] << b);
+  }
+  return bits;
+}
+
+// False: the neighbours are of other faces, or disagree.
+bool ShadeAsNeighbours(const Optics& optics, const MidHits& mid, int u, int v, std::span<std::uint8_t> shadow) {
+  const auto middle = [&](int x, int y) { return optics.Middle(static_cast<std::size_t>(y * optics.width + x)); };
+  const std::size_t pixel = static_cast<std::size_t>(v * optics.width + u), mine = optics.Middle(pixel);
+  std::optional<std::uint8_t> bits;
+  const auto agrees = [&](int x, int y) {
+    if (x < 0 || y < 0 || x >= optics.width || y >= optics.height) return true;
+    const std::size_t other = middle(x, y);
+    if (mid.hits[other].face != mid.hits[mine].face || shadow[other] != bits.value_or(shadow[other])) return false;
+    bits = shadow[other];
+    return true;
+  };
+  if (!agrees(u - 1, v) || !agrees(u + 1, v) || !agrees(u, v - 1) || !agrees(u, v + 1) || !bits) return false;
+  for (std::size_t s = 0; s < static_cast<std::size_t>(optics.per_pixel); ++s) shadow[optics.SubRay(pixel, s)] = *bits;
+  return true;
 }
 
 }  // namespace
@@ -110,7 +161,7 @@ std::vector<float> AmbientOfPixels(const RayScene& scene, const Surroundings& ar
     const int geom = extra[i].hit.geom;
     const float there =
         geom < 0 ? sky : lit[i] * static_cast<float>(around.material[static_cast<std::size_t>(geom)].nir_albedo);
-    ambient[extra[i].sub_ray / static_cast<std::size_t>(optics.per_pixel)] +=
+    ambient[optics.PixelOf(extra[i].sub_ray)] +=
         extra[i].ambient_share * there / static_cast<float>(optics.per_pixel);
   }
   return ambient;
@@ -119,29 +170,22 @@ std::vector<float> AmbientOfPixels(const RayScene& scene, const Surroundings& ar
 std::vector<std::uint8_t> LampShadows(const RayScene& scene, const Optics& optics, const MidHits& mid, int threads) {
   const std::size_t n = static_cast<std::size_t>(optics.per_pixel);
   std::vector<std::uint8_t> shadow(mid.hits.size(), 0);
-  ParallelFor(optics.height, threads, [&](int row) {
-    for (std::size_t b = 0; b < optics.boards.size(); ++b) {
-      const Eigen::Vector3f lamp = (mid.T_world_camera * optics.boards[b].position.cast<double>()).cast<float>();
-      std::vector<Ray> rays;
-      std::vector<std::size_t> of;
-      ForLitSubRays(optics, mid, row, [&](std::size_t, std::size_t i, float) {
-        if (mid.hits[i].geom < 0) return;
-        const LitPoint from{mid.Point(i), mid.hits[i].normal};
-        const Eigen::Vector3f way = lamp - from.point;
-        rays.push_back(RayFrom(from, way.normalized(), way.norm()));
-        of.push_back(i);
-      });
-      std::vector<std::uint8_t> blocked(rays.size());
-      scene.Occluded(rays, blocked, Panes::kLookedThrough);
-      for (std::size_t r = 0; r < rays.size(); ++r) {
-        if (!blocked[r]) continue;
-        const std::size_t pixel = of[r] / n;
-        const std::size_t begin = mid.mixed[pixel] ? of[r] : pixel * n,
-                          end = mid.mixed[pixel] ? of[r] + 1 : (pixel + 1) * n;
-        for (std::size_t i = begin; i < end; ++i) shadow[i] |= static_cast<std::uint8_t>(1u << b);
+  // Every second pixel and all that see an edge, then those between whose neighbours do not say it already.
+  for (const bool between : {false, true}) {
+    ParallelFor(optics.height, threads, [&](int v) {
+      std::vector<std::size_t> sub_rays;
+      for (int u = 0; u < optics.width; ++u) {
+        const std::size_t pixel = static_cast<std::size_t>(v * optics.width + u);
+        if (((u + v) % 2 != 0 && !mid.mixed[pixel]) != between) continue;
+        if (!between || !ShadeAsNeighbours(optics, mid, u, v, shadow)) AddOneOfEachFace(optics, mid, pixel, sub_rays);
       }
-    }
-  });
+      const std::vector<std::uint8_t> bits = BoardsBlocked(scene, optics, mid, sub_rays);
+      const std::size_t width = static_cast<std::size_t>(optics.width), first = static_cast<std::size_t>(v) * width * n;
+      for (std::size_t r = 0; r < sub_rays.size(); ++r)
+        for (std::size_t i = first + (sub_rays[r] - first) % width; i < first + n * width; i += width)
+          if (mid.hits[i].face == mid.hits[sub_rays[r]].face) shadow[i] = bits[r];
+    });
+  }
   return shadow;
 }
 

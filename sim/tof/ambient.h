@@ -24,7 +24,7 @@ std::vector<float> Irradiance(const RayScene& scene, const Surroundings& around,
 std::vector<float> AmbientOfPixels(const RayScene& scene, const Surroundings& around, const Optics& optics,
                                    const MidHits& mid, std::span<const ExtraReturn> extra, int threads);
 
-// [pixel * per_pixel + sub-ray] bit b: something stands between board b and what the sub-ray meets.
+// [sub-ray] bit b: something stands between board b and what the sub-ray meets.
 std::vector<std::uint8_t> LampShadows(const RayScene& scene, const Optics& optics, const MidHits& mid, int threads);
 
 }  // namespace merlin::sim

@@ -2,54 +2,57 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "sim/lanes.h"
 #include "sim/parallel.h"
 
 namespace merlin::sim {
 namespace {
 
-constexpr float kSamePlane_m = 1e-4f;
 constexpr float kGrazing = 1e-6f;
 
-// One plane of one geom.
-struct Face {
-  int geom = -1;
-  Eigen::Vector3f normal{0, 0, 0};
-  float offset_m = 0.0f;  // normal . p of its points
-  bool Same(const Face& other) const {
-    return geom >= 0 && geom == other.geom && normal == other.normal &&
-           std::abs(offset_m - other.offset_m) < kSamePlane_m;
-  }
-};
-
-Face FaceOf(const MidHits& mid, std::size_t i) {
-  const RayHit& hit = mid.hits[i];
-  if (hit.geom < 0) return {};
-  return {hit.geom, hit.normal, hit.normal.dot(mid.Point(i))};
+// Of one row of the grid, the sub-rays of this colour of the chessboard.
+template <class Take>
+void ForEverySecond(const SubGrid& grid, int y, int color, const Take& take) {
+  for (int x = (y + color) % 2; x < grid.width; x += 2) take(x, grid.SubRay(x, y));
 }
 
-void MarkPixels(const Optics& optics, MidHits& mid) {
+// The face that all neighbours of a sub-ray share, or kCurvedFace: they share none.
+int SharedFace(const SubGrid& grid, std::span<const RayHit> hits, int x, int y) {
+  std::array<std::size_t, 4> neighbours;
+  std::size_t count = 0;
+  if (x > 0) neighbours[count++] = grid.SubRay(x - 1, y);
+  if (x + 1 < grid.width) neighbours[count++] = grid.SubRay(x + 1, y);
+  if (y > 0) neighbours[count++] = grid.SubRay(x, y - 1);
+  if (y + 1 < grid.height) neighbours[count++] = grid.SubRay(x, y + 1);
+  for (std::size_t i = 1; i < count; ++i)
+    if (hits[neighbours[i]].face != hits[neighbours[0]].face) return kCurvedFace;
+  return count == 0 ? kCurvedFace : hits[neighbours[0]].face;
+}
+
+// Casts the rays of these sub-rays.
+void CastSome(const RayScene& scene, std::span<const std::size_t> sub_rays, MidHits& mid) {
+  std::vector<Ray> rays;
+  rays.reserve(sub_rays.size());
+  for (const std::size_t i : sub_rays) rays.push_back(mid.rays[i]);
+  std::vector<RayHit> hits(rays.size());
+  scene.Cast(rays, hits);
+  for (std::size_t r = 0; r < sub_rays.size(); ++r) mid.hits[sub_rays[r]] = hits[r];
+}
+
+RayHit HitOf(const Face& face, int number, const Ray& ray) {
+  const Eigen::Vector3f normal = face.normal.dot(ray.direction) > 0.0f ? Eigen::Vector3f(-face.normal) : face.normal;
+  return {Range_m(face, ray.origin, ray.direction), face.geom, number, normal};
+}
+
+void MarkMixed(const Optics& optics, MidHits& mid) {
   const std::size_t n = static_cast<std::size_t>(optics.per_pixel);
-  std::vector<Face> faces(optics.pixels());
   mid.mixed.assign(optics.pixels(), 0);
-  mid.flat.assign(optics.pixels(), 0);
   for (std::size_t p = 0; p < optics.pixels(); ++p) {
-    faces[p] = FaceOf(mid, p * n);
-    for (std::size_t s = 1; s < n; ++s) {
-      const Face other = FaceOf(mid, p * n + s);
-      if (faces[p].Same(other) || (faces[p].geom < 0 && other.geom < 0)) continue;
-      mid.mixed[p] = 1;
-      faces[p] = {};
-      break;
-    }
-  }
-  for (int v = 1; v + 1 < optics.height; ++v) {
-    for (int u = 1; u + 1 < optics.width; ++u) {
-      const std::size_t p = static_cast<std::size_t>(v * optics.width + u), w = static_cast<std::size_t>(optics.width);
-      const auto same = [&](std::size_t q) { return faces[p].Same(faces[q]); };
-      mid.flat[p] = same(p - 1) && same(p + 1) && same(p - w) && same(p + w) && same(p - w - 1) && same(p - w + 1) &&
-                    same(p + w - 1) && same(p + w + 1);
-    }
+    const int face = mid.hits[optics.SubRay(p, 0)].face;
+    for (std::size_t s = 1; s < n; ++s)
+      mid.mixed[p] |= face == kCurvedFace || mid.hits[optics.SubRay(p, s)].face != face;
   }
 }
 
@@ -69,19 +72,39 @@ void Set(RowHits& row, std::size_t at, int geom, float range_m, const Eigen::Vec
 }  // namespace
 
 MidHits TraceMid(const RayScene& scene, const Optics& optics, const Pose& T_world_camera, int threads) {
-  MidHits mid{.T_world_camera = T_world_camera, .rays = {}, .hits = {}, .mixed = {}, .flat = {}};
-  const std::size_t row_rays = static_cast<std::size_t>(optics.width) * static_cast<std::size_t>(optics.per_pixel);
+  MidHits mid(optics);
+  const SubGrid& grid = mid.grid;
+  mid.T_world_camera = T_world_camera;
   mid.rays.resize(optics.x.size());
   mid.hits.resize(optics.x.size());
   const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
   const Eigen::Vector3f origin = T_world_camera.translation().cast<float>();
   ParallelFor(optics.height, threads, [&](int v) {
-    const std::size_t first = static_cast<std::size_t>(v) * row_rays;
-    for (std::size_t i = first; i < first + row_rays; ++i)
-      mid.rays[i] = {.origin = origin, .direction = R * optics.Direction(i)};
-    scene.Cast(std::span(mid.rays).subspan(first, row_rays), std::span(mid.hits).subspan(first, row_rays));
+    std::vector<std::size_t> traced;
+    for (int y = v * grid.edge; y < (v + 1) * grid.edge; ++y) {
+      for (int x = 0; x < grid.width; ++x) {
+        const std::size_t i = grid.SubRay(x, y);
+        mid.rays[i] = {.origin = origin, .direction = R * optics.Direction(i)};
+      }
+      ForEverySecond(grid, y, 0, [&](int, std::size_t i) { traced.push_back(i); });
+    }
+    CastSome(scene, traced, mid);
   });
-  MarkPixels(optics, mid);
+  const std::vector<Face>& faces = scene.faces();
+  ParallelFor(optics.height, threads, [&](int v) {
+    std::vector<std::size_t> traced;
+    for (int y = v * grid.edge; y < (v + 1) * grid.edge; ++y) {
+      ForEverySecond(grid, y, 1, [&](int x, std::size_t i) {
+        const int face = SharedFace(grid, mid.hits, x, y);
+        if (face == kCurvedFace)
+          traced.push_back(i);
+        else if (face != kNoFace)
+          mid.hits[i] = HitOf(faces[static_cast<std::size_t>(face)], face, mid.rays[i]);
+      });
+    }
+    CastSome(scene, traced, mid);
+  });
+  MarkMixed(optics, mid);
   return mid;
 }
 
@@ -90,55 +113,87 @@ void RowHits::Resize(std::size_t n) {
   geom.resize(n);
 }
 
-SubFrameTracer::SubFrameTracer(const RayScene& scene, const Optics& optics, const MidHits& mid,
-                               const BodyMotion& camera, const SubFrame& sub_frame, bool reuse)
-    : scene_(scene), optics_(optics), mid_(mid), reuse_(reuse) {
+FramePlan PlanFrame(const Optics& optics, const MidHits& mid, std::span<const std::uint8_t> calm) {
+  const std::size_t n = static_cast<std::size_t>(optics.per_pixel), width = static_cast<std::size_t>(optics.width);
+  FramePlan plan;
+  std::set<int> faces;
+  for (std::size_t v = 0; v < static_cast<std::size_t>(optics.height); ++v) {
+    const std::size_t first = v * width * n;
+    FramePlan::Row& row = plan.rows.emplace_back();
+    for (std::size_t s = 0; s < n && !calm.empty(); ++s) {
+      for (std::size_t at = s * width; at < (s + 1) * width; ++at) {
+        if (!calm[first + at]) continue;
+        const RayHit& hit = mid.hits[first + at];
+        if (at > s * width && calm[first + at - 1] && row.calm.back().face == hit.face) {
+          ++row.calm.back().end;
+          continue;
+        }
+        row.calm.push_back({at, at + 1, hit.face, hit.geom});
+        if (hit.face >= 0) faces.insert(hit.face);
+      }
+    }
+    for (std::size_t u = 0; u < width; ++u)
+      for (std::size_t at = u; at < n * width; at += width)
+        if (calm.empty() || !calm[first + at]) row.traced.push_back(at);
+  }
+  plan.faces.assign(faces.begin(), faces.end());
+  return plan;
+}
+
+SubFrameTracer::SubFrameTracer(const RayScene& scene, const Optics& optics, const FramePlan& plan,
+                               const BodyMotion& camera, const SubFrame& sub_frame)
+    : scene_(scene), optics_(optics), plan_(plan), seen_(scene.faces().size()) {
   for (std::size_t i = 0; i < SubFrame::kInstants; ++i) {
     const Pose T_world_camera = camera.At(sub_frame.Instant_s(static_cast<int>(i)));
     R_world_camera_[i] = T_world_camera.linear().cast<float>();
     origin_world_[i] = T_world_camera.translation().cast<float>();
+    for (const int number : plan.faces) {
+      const Face& face = scene.faces()[static_cast<std::size_t>(number)];
+      const float distance_m = face.normal.dot(origin_world_[i]) - face.offset_m, side = distance_m < 0.0f ? -1.0f : 1.0f;
+      seen_[static_cast<std::size_t>(number)][i] = {side * (R_world_camera_[i].transpose() * face.normal),
+                                                    side * distance_m};
+    }
   }
 }
 
-void SubFrameTracer::FromPlane(std::size_t pixel, const RayHit& hit, const Eigen::Vector3f& point, RowHits& row,
-                               std::size_t at) const {
-  std::array<Eigen::Vector3f, SubFrame::kInstants> normal;
-  std::array<float, SubFrame::kInstants> distance_m;
-  for (std::size_t i = 0; i < SubFrame::kInstants; ++i) {
-    normal[i] = R_world_camera_[i].transpose() * hit.normal;
-    distance_m[i] = hit.normal.dot(point - origin_world_[i]);
-  }
-  const std::size_t n = static_cast<std::size_t>(optics_.per_pixel);
-  for (std::size_t s = 0; s < n; ++s) {
-    const std::size_t i = static_cast<std::size_t>(InstantOf(optics_, s));
-    const float toward = normal[i].dot(optics_.Direction(pixel * n + s));
-    Set(row, at + s, hit.geom, distance_m[i] / std::min(toward, -kGrazing), normal[i]);
+void SubFrameTracer::FromPlane(const FramePlan::Stretch& stretch, const SeenFace& face, std::size_t first,
+                               RowHits& row) const {
+  const float nx = face.normal_camera.x(), ny = face.normal_camera.y(), nz = face.normal_camera.z();
+  const float distance_m = face.distance_m, grazing = kGrazing;
+  const float *dx = optics_.x.data() + first, *dy = optics_.y.data() + first, *dz = optics_.z.data() + first;
+  float *range_m = row.range_m.data(), *x = row.normal_x.data(), *y = row.normal_y.data(), *z = row.normal_z.data();
+  int* geom = row.geom.data();
+  MERLIN_SIDE_BY_SIDE
+  for (std::size_t at = stretch.begin; at < stretch.end; ++at) {
+    const float toward = -(nx * dx[at] + ny * dy[at] + nz * dz[at]);
+    range_m[at] = distance_m / (toward > grazing ? toward : grazing);
+    x[at] = nx, y[at] = ny, z[at] = nz;
+    geom[at] = stretch.geom;
   }
 }
 
-void SubFrameTracer::Row(int v, RowHits& row) const {
+void SubFrameTracer::Row(int v, RowHits& row, RowRays& work) const {
   const std::size_t n = static_cast<std::size_t>(optics_.per_pixel), width = static_cast<std::size_t>(optics_.width);
-  const std::size_t first = static_cast<std::size_t>(v) * width;
+  const std::size_t first = static_cast<std::size_t>(v) * width * n;
+  const FramePlan::Row& plan = plan_.rows[static_cast<std::size_t>(v)];
   row.Resize(width * n);
-  std::vector<Ray> rays;
-  std::vector<std::size_t> places;  // in the row
-  for (std::size_t u = 0; u < width; ++u) {
-    const std::size_t pixel = first + u, middle = pixel * n + n / 2;
-    if (reuse_ && mid_.flat[pixel] && !scene_.Moves(mid_.hits[middle].geom)) {
-      FromPlane(pixel, mid_.hits[middle], mid_.Point(middle), row, u * n);
-      continue;
-    }
-    for (std::size_t s = 0; s < n; ++s) {
-      const std::size_t i = static_cast<std::size_t>(InstantOf(optics_, s));
-      rays.push_back({.origin = origin_world_[i], .direction = R_world_camera_[i] * optics_.Direction(pixel * n + s)});
-      places.push_back(u * n + s);
-    }
+  const SeenFace nothing{.distance_m = -kGrazing};  // its range is -1: nothing
+  for (const FramePlan::Stretch& stretch : plan.calm) {
+    const std::size_t instant = static_cast<std::size_t>(InstantOf(optics_, stretch.begin / width));
+    FromPlane(stretch, stretch.face < 0 ? nothing : seen_[static_cast<std::size_t>(stretch.face)][instant], first, row);
   }
-  std::vector<RayHit> hits(rays.size());
-  scene_.Cast(rays, hits);
-  for (std::size_t r = 0; r < rays.size(); ++r) {
-    const std::size_t i = static_cast<std::size_t>(InstantOf(optics_, places[r] % n));
-    Set(row, places[r], hits[r].geom, hits[r].range_m, R_world_camera_[i].transpose() * hits[r].normal);
+  work.rays.clear();
+  for (const std::size_t at : plan.traced) {
+    const std::size_t instant = static_cast<std::size_t>(InstantOf(optics_, at / width));
+    work.rays.push_back(
+        {.origin = origin_world_[instant], .direction = R_world_camera_[instant] * optics_.Direction(first + at)});
+  }
+  work.hits.resize(work.rays.size());
+  scene_.Cast(work.rays, work.hits);
+  for (std::size_t r = 0; r < work.rays.size(); ++r) {
+    const std::size_t instant = static_cast<std::size_t>(InstantOf(optics_, plan.traced[r] / width));
+    const RayHit& hit = work.hits[r];
+    Set(row, plan.traced[r], hit.geom, hit.range_m, R_world_camera_[instant].transpose() * hit.normal);
   }
 }
 

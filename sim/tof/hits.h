@@ -4,26 +4,28 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim/motion.h"
 #include "sim/ray_scene.h"
-#include "sim/tof/optics.h"
+#include "sim/tof/sub_grid.h"
 
 namespace merlin::sim {
 
 // At mid-exposure, of every sub-ray.
 struct MidHits {
+  explicit MidHits(const Optics& optics) : grid(optics) {}
   Pose T_world_camera;
-  std::vector<Ray> rays;            // [pixel * per_pixel + sub-ray], world
-  std::vector<RayHit> hits;         // the same
+  SubGrid grid;
+  std::vector<Ray> rays;     // [sub-ray], world
+  std::vector<RayHit> hits;  // the same
   std::vector<std::uint8_t> mixed;  // [pixel] its sub-rays do not all meet one plane of one geom
-  // [pixel] it and its eight neighbours see nothing but one plane of one geom: as long as the picture moves by less
-  // than a pixel, a sub-ray still meets that plane, and where is a matter of one division.
-  std::vector<std::uint8_t> flat;
 
   Eigen::Vector3f Point(std::size_t i) const { return rays[i].origin + hits[i].range_m * rays[i].direction; }
 };
+// Every second sub-ray is traced, as on a chessboard; one whose neighbours all meet one plane meets it, too. What is
+// thinner than a sub-ray may so be missed half of the times.
 MidHits TraceMid(const RayScene& scene, const Optics& optics, const Pose& T_world_camera, int threads);
 
 // Of the sub-rays of one row of pixels in one sub-frame; vectors in the optical frame of the sub-ray's own instant.
@@ -32,6 +34,12 @@ struct RowHits {
   std::vector<float> normal_x, normal_y, normal_z;
   std::vector<int> geom;
   void Resize(std::size_t n);
+};
+
+// Those of them that are traced.
+struct RowRays {
+  std::vector<Ray> rays;
+  std::vector<RayHit> hits;
 };
 
 // When the sub-frames are taken: sub-ray (i, j) of a pixel sees the instant number (i + j) mod 3 of the three into
@@ -44,23 +52,45 @@ struct SubFrame {
   double Middle_s() const { return begin_s + 0.5 * integration_s; }
 };
 
+// What the sub-frames need not trace: sub-rays that in the mid-exposure are far enough from any edge are taken from their
+// plane.
+struct FramePlan {
+  struct Stretch {
+    std::size_t begin, end;  // in the row: neighbours with one instant and one face
+    int face, geom;
+  };
+  struct Row {
+    std::vector<Stretch> calm;
+    std::vector<std::size_t> traced;  // in the row, pixel by pixel: their rays go close together
+  };
+  std::vector<Row> rows;
+  std::vector<int> faces;  // that calm ones see
+};
+// calm: [sub-ray]; empty: none is.
+FramePlan PlanFrame(const Optics& optics, const MidHits& mid, std::span<const std::uint8_t> calm);
+
 class SubFrameTracer {
  public:
-  // reuse: flat pixels may be taken from the mid-exposure's.
-  SubFrameTracer(const RayScene& scene, const Optics& optics, const MidHits& mid, const BodyMotion& camera,
-                 const SubFrame& sub_frame, bool reuse);
-  void Row(int row, RowHits& hits) const;
+  SubFrameTracer(const RayScene& scene, const Optics& optics, const FramePlan& plan, const BodyMotion& camera,
+                 const SubFrame& sub_frame);
+  // rays: room to work in.
+  void Row(int row, RowHits& hits, RowRays& rays) const;
 
  private:
-  void FromPlane(std::size_t pixel, const RayHit& hit, const Eigen::Vector3f& point, RowHits& row,
-                 std::size_t at) const;
+  // A face as seen at one instant: normal in the optical frame, towards the lens, and the lens' distance from the plane.
+  struct SeenFace {
+    Eigen::Vector3f normal_camera{0, 0, 0};
+    float distance_m = 0.0f;
+  };
+
+  void FromPlane(const FramePlan::Stretch& stretch, const SeenFace& face, std::size_t first, RowHits& row) const;
 
   const RayScene& scene_;
   const Optics& optics_;
-  const MidHits& mid_;
-  bool reuse_;
+  const FramePlan& plan_;
   std::array<Eigen::Matrix3f, SubFrame::kInstants> R_world_camera_;
   std::array<Eigen::Vector3f, SubFrame::kInstants> origin_world_;
+  std::vector<std::array<SeenFace, SubFrame::kInstants>> seen_;  // [face], of those that calm sub-rays see
 };
 
 // The mid-exposure's, for a camera that stands in a scene that stands.

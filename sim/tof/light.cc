@@ -3,15 +3,32 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "sim/parallel.h"
 
 namespace merlin::sim {
 namespace {
 
+constexpr int kBand = 6;  // rows that one thread does in one go
+
 double WaveNumber(double frequency_hz) { return 4.0 * std::numbers::pi * frequency_hz / kSpeedOfLight_m_s; }
 
 }  // namespace
+
+// Room to work in, of one row.
+struct LightModel::RowRoom {
+  explicit RowRoom(const Optics& optics)
+      : work(static_cast<std::size_t>(optics.width), static_cast<std::size_t>(optics.per_pixel)),
+        light(static_cast<std::size_t>(optics.width)),
+        ambient_e(static_cast<std::size_t>(optics.width)),
+        offset(static_cast<std::size_t>(optics.width)) {}
+  RowHits hits;
+  RowRays rays;
+  RowWork work;
+  PhasorRow light;
+  std::vector<float> ambient_e, offset;  // offset of the phase: as a length [m], then as an angle [rad]
+};
 
 LightModel::LightModel(const DepthCameraSheet& sheet, const DepthCameraErrors& errors, const TofEffects& effects,
                        int threads)
@@ -32,20 +49,22 @@ std::vector<SubFrame> LightModel::SubFrames(const DepthSettings& settings) const
 }
 
 bool LightModel::Moves(const TofView& view) const {
-  const auto moves = [](const BodyMotion& body) { return !body.still(); };
-  return effects_.motion && (moves(view.camera) || std::ranges::any_of(view.bodies, moves));
+  return effects_.motion && (!view.camera.still() || view.scene.Moves(view.bodies));
 }
 
-bool LightModel::MayReuse(const TofView& view, const MidHits& mid, const DepthSettings& settings) const {
+// What stands can be taken from its plane where no edge comes near within the exposure.
+std::vector<std::uint8_t> LightModel::Calm(const TofView& view, const MidHits& mid, const DepthSettings& settings) const {
+  if (view.scene.Moves(view.bodies)) return {};
   float nearest_m = 100.0f;
   for (const RayHit& hit : mid.hits)
     if (hit.geom >= 0) nearest_m = std::min(nearest_m, hit.range_m);
-  return std::ranges::all_of(view.bodies, &BodyMotion::still) &&
-         PictureMotion_px(optics_, view.camera, sheet_.ExposureSpan_s(settings), nearest_m) < 1.0;
+  const double motion_px = PictureMotion_px(optics_, view.camera, sheet_.ExposureSpan_s(settings), nearest_m);
+  const double reach = std::ceil(std::min(mid.grid.edge * motion_px, 1e6));
+  return CalmSubRays(mid.grid, mid.hits, static_cast<int>(reach));
 }
 
 LightModel::Still LightModel::TakeStill(const TofView& view) const {
-  Still still;
+  Still still(optics_);
   still.mid = TraceMid(view.scene, optics_, view.camera.T_world_body, threads_);
   still.lamp_albedo = LampAlbedos(view.surroundings, effects_);
   if (effects_.glass || effects_.specular)
@@ -64,16 +83,18 @@ std::vector<LightImages> LightModel::Expose(const TofView& view, const DepthSett
                                             const FixedPattern& pattern, const Drift& drift) const {
   view.scene.Update(view.bodies);
   Still still = TakeStill(view);
-  const bool moves = Moves(view), reuse = MayReuse(view, still.mid, settings);
+  const bool moves = Moves(view);
+  const FramePlan plan = moves ? PlanFrame(optics_, still.mid, Calm(view, still.mid, settings)) : FramePlan{};
   const std::vector<SubFrame> sub_frames = SubFrames(settings);
   std::vector<LightImages> images;
   for (std::size_t i = 0; i < sub_frames.size(); ++i) {
     const double frequency_hz = i < 4 ? settings.frequency_hz : settings.second_frequency_hz;
     if (effects_.multipath && i % 4 == 0) still.bounce = Bounce(view, still, frequency_hz, settings.integration_s);
     if (moves) view.scene.Update(view.bodies, sub_frames[i].Middle_s());
-    const SubFrameTracer tracer(view.scene, optics_, still.mid, view.camera, sub_frames[i], reuse);
+        std::optional<SubFrameTracer> tracer;
+    if (moves) tracer.emplace(view.scene, optics_, plan, view.camera, sub_frames[i]);
     images.push_back(Expose(still,
-                            {moves ? &tracer : nullptr, frequency_hz, settings.integration_s, static_cast<int>(i % 4)},
+                            {tracer ? &*tracer : nullptr, frequency_hz, settings.integration_s, static_cast<int>(i % 4)},
                             pattern, drift));
   }
   if (effects_.scatter) {
@@ -87,47 +108,58 @@ std::vector<LightImages> LightModel::Expose(const TofView& view, const DepthSett
 
 LightImages LightModel::Expose(const Still& still, const Now& now, const FixedPattern& pattern,
                                const Drift& drift) const {
-  const std::size_t width = static_cast<std::size_t>(optics_.width);
-  const double wave_number = WaveNumber(now.frequency_hz), contrast = sheet_.Contrast(now.frequency_hz);
-  const double K_T = sheet_.signal_e_m2_per_us * now.integration_s * 1e6;
-  const double ambient_gain = K_T * errors_.filter_nm / errors_.lamp_w_per_sr;  // [e] of albedo times irradiance
-  const double a3 = effects_.wiggling ? errors_.harmonic_3 : 0.0, a5 = effects_.wiggling ? errors_.harmonic_5 : 0.0;
-  const PhasorScale scale{K_T / optics_.per_pixel, wave_number, still.lamp_albedo};
-  LightImages images{std::vector<float>(optics_.pixels()), std::vector<float>(optics_.pixels()),
-                     std::vector<std::uint8_t>(optics_.pixels())};
-  ParallelFor(optics_.height, threads_, [&](int v) {
-    const std::size_t row = static_cast<std::size_t>(v);
-    RowHits hits;
-    if (now.tracer != nullptr)
-      now.tracer->Row(v, hits);
-    else
-      RowOfMid(optics_, still.mid, v, hits);
-    std::vector<Phasors> lights(width);
-    const std::span<const ExtraReturn> extra(still.extra.data() + still.extra_from[row],
-                                             still.extra.data() + still.extra_from[row + 1]);
-    RowPhasors(hits, optics_, scale, still.mid, still.shadow, extra, v, lights);
-    for (std::size_t u = 0; u < width; ++u) {
-      const std::size_t pixel = row * width + u;
-      Phasors& light = lights[u];
-      images.lit[pixel] = light.total_e > 0.0f;
-      if (!still.bounce.empty()) light += still.bounce[pixel];
-      const double ambient_e = still.ambient.empty() ? 0.0 : ambient_gain * optics_.lens[pixel] * still.ambient[pixel];
-      const double offset_m = pattern.range_m[pixel] + drift.range_m + Offset_m(light, ambient_e, contrast);
-      if (offset_m != 0.0) light.Turn(wave_number * offset_m);
-      images.total_e[pixel] = light.total_e + static_cast<float>(ambient_e);
-      images.correlation_e[pixel] = static_cast<float>(contrast * Correlate(light, now.k, a3, a5));
-    }
+  const std::size_t pixels = optics_.pixels();
+  LightImages images{std::vector<float>(pixels), std::vector<float>(pixels), std::vector<std::uint8_t>(pixels)};
+  ParallelFor((optics_.height + kBand - 1) / kBand, threads_, [&](int band) {
+    RowRoom room(optics_);
+    for (int v = band * kBand; v < std::min(optics_.height, (band + 1) * kBand); ++v)
+      ExposeRow(still, now, pattern, drift, v, room, images);
   });
   return images;
+}
+
+void LightModel::ExposeRow(const Still& still, const Now& now, const FixedPattern& pattern, const Drift& drift, int v,
+                           RowRoom& room, LightImages& images) const {
+  const std::size_t width = static_cast<std::size_t>(optics_.width), row = static_cast<std::size_t>(v),
+                    first = row * width;
+  const double wave_number = WaveNumber(now.frequency_hz), contrast = sheet_.Contrast(now.frequency_hz);
+  const double K_T = sheet_.signal_e_m2_per_us * now.integration_s * 1e6;
+  if (now.tracer != nullptr)
+    now.tracer->Row(v, room.hits, room.rays);
+  else
+    RowOfMid(optics_, still.mid, v, room.hits);
+  const std::span<const ExtraReturn> extra(still.extra.data() + still.extra_from[row],
+                                           still.extra.data() + still.extra_from[row + 1]);
+  PhasorRow& light = room.light;
+  RowPhasors(room.hits, optics_, {K_T / optics_.per_pixel, wave_number, still.lamp_albedo}, still.mid, still.shadow,
+             extra, v, room.work, light);
+  for (std::size_t u = 0; u < width; ++u) {
+    images.lit[first + u] = light.total_e[u] > 0.0f;
+    if (!still.bounce.empty()) light.Add(u, still.bounce[first + u]);
+    room.ambient_e[u] = 0.0f;
+  }
+  if (!still.ambient.empty()) {
+    const float gain = static_cast<float>(K_T * errors_.filter_nm / errors_.lamp_w_per_sr);  // [e] of albedo times irradiance
+    for (std::size_t u = 0; u < width; ++u) room.ambient_e[u] = gain * optics_.lens[first + u] * still.ambient[first + u];
+  }
+  AddOffsets(contrast, room);
+  for (std::size_t u = 0; u < width; ++u)
+    room.offset[u] = static_cast<float>(wave_number) *
+                         (room.offset[u] + pattern.range_m[first + u] + static_cast<float>(drift.range_m));
+  light.Turn(room.offset);
+  const std::array<float, 3> weights{1.0f, effects_.wiggling ? static_cast<float>(errors_.harmonic_3) : 0.0f,
+                                     effects_.wiggling ? static_cast<float>(errors_.harmonic_5) : 0.0f};
+  light.Correlate(now.k, weights, static_cast<float>(contrast),
+                  std::span(images.correlation_e).subspan(first, width));
+  for (std::size_t u = 0; u < width; ++u) images.total_e[first + u] = light.total_e[u] + room.ambient_e[u];
 }
 
 std::vector<Phasors> LightModel::Bounce(const TofView& view, const Still& still, double frequency_hz,
                                         double integration_s) const {
   const double K_T = sheet_.signal_e_m2_per_us * integration_s * 1e6, wave_number = WaveNumber(frequency_hz);
-  const std::size_t n = static_cast<std::size_t>(optics_.per_pixel);
   std::vector<Phasors> bounce = OneBounce(view.scene, optics_, still.mid, still.lamp_albedo, wave_number, {}, threads_);
   for (std::size_t pixel = 0; pixel < bounce.size(); ++pixel) {
-    const RayHit& hit = still.mid.hits[pixel * n + n / 2];
+    const RayHit& hit = still.mid.hits[optics_.Middle(pixel)];
     if (hit.geom < 0) continue;
     bounce[pixel].Scale(K_T * optics_.lens[pixel] *
                         view.surroundings.material[static_cast<std::size_t>(hit.geom)].nir_albedo);
@@ -136,17 +168,22 @@ std::vector<Phasors> LightModel::Bounce(const TofView& view, const Still& still,
   return bounce;
 }
 
-// Offsets of the phase as lengths: intensity, ambient light.
-double LightModel::Offset_m(const Phasors& light, double ambient_e, double contrast) const {
-  double offset_m = 0.0;
+// Offsets of the phase, as lengths: intensity, ambient light.
+void LightModel::AddOffsets(double contrast, RowRoom& room) const {
+  std::ranges::fill(room.offset, 0.0f);
+  const std::vector<float>&re = room.light.re[0], &im = room.light.im[0];
   if (effects_.intensity) {
     // The amplitude of albedo 0.2 at 3 m in 1 ms at 20 MHz.
-    const double amplitude_0_e = sheet_.LampAmplitude_e_m2({}) * 0.2 / 9.0;
-    offset_m += errors_.intensity_bias_m *
-                std::exp(-contrast * std::sqrt(light.re[0] * light.re[0] + light.im[0] * light.im[0]) / amplitude_0_e);
+    const float amplitude_0_e = static_cast<float>(sheet_.LampAmplitude_e_m2({}) * 0.2 / 9.0);
+    const float bias_m = static_cast<float>(errors_.intensity_bias_m);
+    const float per_phasor = -static_cast<float>(contrast) / amplitude_0_e;
+    for (std::size_t u = 0; u < re.size(); ++u)
+      room.offset[u] += bias_m * std::exp(per_phasor * std::sqrt(re[u] * re[u] + im[u] * im[u]));
   }
-  if (effects_.sunlight) offset_m += errors_.ambient_bias_m * ambient_e / sheet_.full_well_e;
-  return offset_m;
+  if (effects_.sunlight) {
+    const float per_e_m = static_cast<float>(errors_.ambient_bias_m / sheet_.full_well_e);
+    for (std::size_t u = 0; u < re.size(); ++u) room.offset[u] += per_e_m * room.ambient_e[u];
+  }
 }
 
 }  // namespace merlin::sim

@@ -33,6 +33,7 @@ class LightModel {
  private:
   // What is the same for every sub-frame: taken at mid-exposure.
   struct Still {
+    explicit Still(const Optics& optics) : mid(optics) {}
     MidHits mid;
     std::vector<float> lamp_albedo;  // [geom]
     std::vector<ExtraReturn> extra;
@@ -50,9 +51,12 @@ class LightModel {
   Still TakeStill(const TofView& view) const;
   LightImages Expose(const Still& still, const Now& now, const FixedPattern& pattern, const Drift& drift) const;
   std::vector<Phasors> Bounce(const TofView& view, const Still& still, double frequency_hz, double integration_s) const;
-  double Offset_m(const Phasors& light, double ambient_e, double contrast) const;
+  struct RowRoom;
+  void ExposeRow(const Still& still, const Now& now, const FixedPattern& pattern, const Drift& drift, int v,
+                 RowRoom& room, LightImages& images) const;
+  void AddOffsets(double contrast, RowRoom& room) const;
   bool Moves(const TofView& view) const;
-  bool MayReuse(const TofView& view, const MidHits& mid, const DepthSettings& settings) const;
+  std::vector<std::uint8_t> Calm(const TofView& view, const MidHits& mid, const DepthSettings& settings) const;
 
   DepthCameraSheet sheet_;
   DepthCameraErrors errors_;

@@ -5,7 +5,9 @@
 #include <numbers>
 #include <optional>
 
+#include "sim/lanes.h"
 #include "sim/parallel.h"
+#include "sim/tof/sin_cos.h"
 
 namespace merlin::sim {
 namespace {
@@ -14,11 +16,12 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kClear_m = 1e-3f;
 constexpr float kSameNormal = 0.95f, kSamePlane_m = 0.05f;
 
-struct Light {
-  Eigen::Vector3f point, normal;  // world
-  float range_m = 0.0f;           // from the lamp
-  float power = 0.0f;             // albedo / pi times its share of the lamp's light: solid angle times lobe
-  float area_m2 = 0.0f;           // of surface it stands for
+// What the lamp lights, as lamps themselves; world frame.
+struct Lights {
+  std::vector<float> x, y, z, normal_x, normal_y, normal_z;
+  std::vector<float> range_m;  // from the lamp
+  std::vector<float> power;    // albedo / pi times its share of the lamp's light: solid angle times lobe
+  std::vector<float> disc_m2;  // of surface it stands for, over pi
 };
 
 struct Receiver {
@@ -30,7 +33,7 @@ struct Receiver {
   }
 };
 
-std::vector<Light> Lights(const RayScene& scene, const Optics& optics, const Pose& T_world_camera,
+Lights LightsOf(const RayScene& scene, const Optics& optics, const Pose& T_world_camera,
                           std::span<const float> albedo, const MultipathGrid& grid) {
   const double reach_x = optics.lamp_reach * optics.tan_half_x, reach_y = optics.lamp_reach * optics.tan_half_y;
   const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
@@ -50,44 +53,61 @@ std::vector<Light> Lights(const RayScene& scene, const Optics& optics, const Pos
   }
   std::vector<RayHit> hits(rays.size());
   scene.Cast(rays, hits);
-  std::vector<Light> lights;
+  Lights lights;
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    if (hits[i].geom < 0) continue;
-    const float toward = std::max(-hits[i].normal.dot(rays[i].direction), 0.05f);
-    lights.push_back({.point = origin + hits[i].range_m * rays[i].direction,
-                      .normal = hits[i].normal,
-                      .range_m = hits[i].range_m,
-                      .power = static_cast<float>(solid_angle[i] * lobe[i]) / kPi *
-                               std::min(albedo[static_cast<std::size_t>(hits[i].geom)], 1.0f),
-                      .area_m2 = static_cast<float>(solid_angle[i]) * hits[i].range_m * hits[i].range_m / toward});
+    const RayHit& hit = hits[i];
+    if (hit.geom < 0) continue;
+    const float toward = std::max(-hit.normal.dot(rays[i].direction), 0.05f);
+    const Eigen::Vector3f point = origin + hit.range_m * rays[i].direction;
+    lights.x.push_back(point.x()), lights.y.push_back(point.y()), lights.z.push_back(point.z());
+    lights.normal_x.push_back(hit.normal.x()), lights.normal_y.push_back(hit.normal.y());
+    lights.normal_z.push_back(hit.normal.z());
+    lights.range_m.push_back(hit.range_m);
+    lights.power.push_back(static_cast<float>(solid_angle[i] * lobe[i]) / kPi *
+                           std::min(albedo[static_cast<std::size_t>(hit.geom)], 1.0f));
+    lights.disc_m2.push_back(static_cast<float>(solid_angle[i]) * hit.range_m * hit.range_m / (toward * kPi));
   }
   return lights;
 }
 
 // Sum over the lights that reach a point: form factor of a disc, cos cos / (r^2 + A / pi) (Hanrahan's approximation).
-Phasors Gather(const RayScene& scene, std::span<const Light> lights, const Eigen::Vector3f& point,
-               const Eigen::Vector3f& normal, float wave_number) {
+Phasors Gather(const RayScene& scene, const Lights& lights, const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
+               float wave_number) {
+  const std::size_t count = lights.power.size();
+  std::vector<float> distance_m(count), electrons(count), phase(count), sine(count), cosine(count);
+  {
+    const float px = point.x(), py = point.y(), pz = point.z(), nx = normal.x(), ny = normal.y(), nz = normal.z();
+    const float *x = lights.x.data(), *y = lights.y.data(), *z = lights.z.data();
+    const float *lx = lights.normal_x.data(), *ly = lights.normal_y.data(), *lz = lights.normal_z.data();
+    const float *power = lights.power.data(), *disc_m2 = lights.disc_m2.data(), *range_m = lights.range_m.data();
+    float *distance = distance_m.data(), *gain = electrons.data(), *turn = phase.data();
+    MERLIN_SIDE_BY_SIDE
+    for (std::size_t i = 0; i < count; ++i) {
+      const float dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz, squared = dx * dx + dy * dy + dz * dz;
+      const float here = nx * dx + ny * dy + nz * dz, there = -(lx[i] * dx + ly[i] * dy + lz[i] * dz);  // times distance
+      distance[i] = std::sqrt(squared);
+      const float least = 1e-4f * distance[i];
+      const float form = power[i] * here * there / (squared * (squared + disc_m2[i]));
+      gain[i] = (here > least) & (there > least) ? form : 0.0f;
+      turn[i] = wave_number * 0.5f * (range_m[i] + distance[i]);
+    }
+  }
   std::vector<Ray> rays;
-  std::vector<float> electrons, way_m;
-  for (const Light& light : lights) {
-    const Eigen::Vector3f way = light.point - point;
-    const float squared = way.squaredNorm();
-    const float here = normal.dot(way), there = -light.normal.dot(way);  // times the distance
-    if (here <= 1e-4f * std::sqrt(squared) || there <= 1e-4f * std::sqrt(squared)) continue;
-    const float distance = std::sqrt(squared);
-    rays.push_back(
-        {.origin = point + kClear_m * normal, .direction = way / distance, .max_range_m = distance - 5.0f * kClear_m});
-    electrons.push_back(light.power * here * there / (squared * (squared + light.area_m2 / kPi)));
-    way_m.push_back(0.5f * (light.range_m + distance));
+  std::vector<std::size_t> of;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (electrons[i] <= 0.0f) continue;
+    const Eigen::Vector3f way = Eigen::Vector3f(lights.x[i], lights.y[i], lights.z[i]) - point;
+    rays.push_back({.origin = point + kClear_m * normal,
+                    .direction = way / distance_m[i],
+                    .max_range_m = distance_m[i] - 5.0f * kClear_m});
+    of.push_back(i);
   }
   std::vector<std::uint8_t> blocked(rays.size());
   scene.Occluded(rays, blocked, Panes::kLookedThrough);
+  SinCos(phase, sine, cosine);
   Phasors sum;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (blocked[i]) continue;
-    const float phase = wave_number * way_m[i];
-    sum.Add(electrons[i], std::cos(phase), std::sin(phase));
-  }
+  for (std::size_t r = 0; r < rays.size(); ++r)
+    if (!blocked[r]) sum.Add(electrons[of[r]], cosine[of[r]], sine[of[r]]);
   return sum;
 }
 
@@ -142,18 +162,45 @@ std::optional<Phasors> Between(const ReceiverGrid& grid, double u, double v, con
   return mean;
 }
 
+// [pixel] of those without a receiver on their plane: the pixel, to the left or above, whose light they share, or they
+// themselves. What is indirect is smooth: over a few pixels of one plane it is the same.
+std::vector<std::size_t> AsAnother(const Optics& optics, const MidHits& mid, std::span<const std::uint8_t> alone) {
+  constexpr int kReach_px = 2;
+  const auto like = [&](std::size_t a, std::size_t b) {
+    const RayHit &at_a = mid.hits[optics.Middle(a)], &at_b = mid.hits[optics.Middle(b)];
+    const Eigen::Vector3f apart = mid.Point(optics.Middle(a)) - mid.Point(optics.Middle(b));
+    return at_a.normal.dot(at_b.normal) > kSameNormal && std::abs(at_a.normal.dot(apart)) < kSamePlane_m;
+  };
+  std::vector<std::size_t> as(optics.pixels());
+  for (std::size_t pixel = 0; pixel < as.size(); ++pixel) as[pixel] = pixel;
+  for (int v = 0; v < optics.height; ++v) {
+    for (int u = 0; u < optics.width; ++u) {
+      const std::size_t pixel = static_cast<std::size_t>(v * optics.width + u);
+      for (int dv = 0; dv <= kReach_px && alone[pixel] && as[pixel] == pixel; ++dv) {
+        for (int du = -kReach_px; du <= kReach_px; ++du) {
+          if (v - dv < 0 || u + du < 0 || u + du >= optics.width || (dv == 0 && du >= 0)) continue;
+          const std::size_t other = static_cast<std::size_t>((v - dv) * optics.width + u + du);
+          if (!alone[other] || as[other] != other || !like(pixel, other)) continue;
+          as[pixel] = other;
+          break;
+        }
+      }
+    }
+  }
+  return as;
+}
+
 }  // namespace
 
 std::vector<Phasors> OneBounce(const RayScene& scene, const Optics& optics, const MidHits& mid,
                                std::span<const float> albedo, double wave_number_rad_per_m, const MultipathGrid& grid,
                                int threads) {
   const float wave_number = static_cast<float>(wave_number_rad_per_m);
-  const std::vector<Light> lights = Lights(scene, optics, mid.T_world_camera, albedo, grid);
-  const std::size_t n = static_cast<std::size_t>(optics.per_pixel);
+  const Lights lights = LightsOf(scene, optics, mid.T_world_camera, albedo, grid);
   ReceiverGrid receivers(optics, grid);
   ParallelFor(receivers.rows, threads, [&](int j) {
     for (int i = 0; i < receivers.columns; ++i) {
-      const std::size_t middle = receivers.PixelOf(i, j, optics) * n + n / 2;
+      const std::size_t middle = optics.Middle(receivers.PixelOf(i, j, optics));
       if (mid.hits[middle].geom < 0) continue;
       const Eigen::Vector3f point = mid.Point(middle), normal = mid.hits[middle].normal;
       receivers.receivers[static_cast<std::size_t>(j * receivers.columns + i)] = {
@@ -161,16 +208,26 @@ std::vector<Phasors> OneBounce(const RayScene& scene, const Optics& optics, cons
     }
   });
   std::vector<Phasors> bounce(optics.pixels());
+  std::vector<std::uint8_t> alone(optics.pixels(), 0);
   ParallelFor(optics.height, threads, [&](int v) {
     for (int u = 0; u < optics.width; ++u) {
-      const std::size_t pixel = static_cast<std::size_t>(v * optics.width + u), middle = pixel * n + n / 2;
+      const std::size_t pixel = static_cast<std::size_t>(v * optics.width + u), middle = optics.Middle(pixel);
       const RayHit& hit = mid.hits[middle];
       if (hit.geom < 0) continue;
-      const Eigen::Vector3f point = mid.Point(middle);
-      const std::optional<Phasors> between = Between(receivers, u, v, hit, point);
-      bounce[pixel] = between ? *between : Gather(scene, lights, point, hit.normal, wave_number);
+      const std::optional<Phasors> between = Between(receivers, u, v, hit, mid.Point(middle));
+      if (between) bounce[pixel] = *between;
+      alone[pixel] = !between;
     }
   });
+  const std::vector<std::size_t> as = AsAnother(optics, mid, alone);
+  std::vector<std::size_t> own;
+  for (std::size_t pixel = 0; pixel < as.size(); ++pixel)
+    if (alone[pixel] && as[pixel] == pixel) own.push_back(pixel);
+  ParallelFor(static_cast<int>(own.size()), threads, [&](int k) {
+    const std::size_t pixel = own[static_cast<std::size_t>(k)], middle = optics.Middle(pixel);
+    bounce[pixel] = Gather(scene, lights, mid.Point(middle), mid.hits[middle].normal, wave_number);
+  });
+  for (std::size_t pixel = 0; pixel < as.size(); ++pixel) bounce[pixel] = bounce[as[pixel]];
   return bounce;
 }
 

@@ -24,13 +24,17 @@ Optics::Optics(const DepthCameraSheet& sheet, const DepthCameraErrors& errors, c
     for (int u = 0; u < width; ++u) {
       const double cosine = sheet.camera.Ray(u, v).z();
       lens.push_back(effects.lamp ? static_cast<float>(std::pow(cosine, 4)) : 1.0f);
-      for (int s = 0; s < edge * edge; ++s) {
-        const double du = (s % edge + 0.5) / edge - 0.5, dv = (s / edge + 0.5) / edge - 0.5;
+      first_sub_ray.push_back(static_cast<std::size_t>(v * width * edge * edge + u));
+    }
+    for (int s = 0; s < edge * edge; ++s) {
+      const double du = (s % edge + 0.5) / edge - 0.5, dv = (s / edge + 0.5) / edge - 0.5;
+      for (int u = 0; u < width; ++u) {
         const Eigen::Vector3d ray = sheet.camera.Ray(u + du, v + dv);
         x.push_back(static_cast<float>(ray.x()));
         y.push_back(static_cast<float>(ray.y()));
         z.push_back(static_cast<float>(ray.z()));
-        lit_and_seen.push_back(lens.back() * static_cast<float>(Lobe(ray.x() / ray.z(), ray.y() / ray.z())));
+        lit_and_seen.push_back(lens[static_cast<std::size_t>(v * width + u)] *
+                               static_cast<float>(Lobe(ray.x() / ray.z(), ray.y() / ray.z())));
       }
     }
   }

@@ -22,15 +22,26 @@ struct Optics {
   Optics(const DepthCameraSheet& sheet, const DepthCameraErrors& errors, const TofEffects& effects);
 
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  // The index of a pixel's s-th sub-ray, s counted row by row: [row of pixels][s][column of pixels], so that what
+  // neighbours have in common lies side by side.
+  std::size_t SubRay(std::size_t pixel, std::size_t s) const {
+    return first_sub_ray[pixel] + s * static_cast<std::size_t>(width);
+  }
+  std::size_t Middle(std::size_t pixel) const { return SubRay(pixel, static_cast<std::size_t>(per_pixel / 2)); }
+  std::size_t PixelOf(std::size_t sub_ray) const {
+    const std::size_t w = static_cast<std::size_t>(width), n = static_cast<std::size_t>(per_pixel);
+    return sub_ray / (w * n) * w + sub_ray % w;
+  }
   Eigen::Vector3f Direction(std::size_t sub_ray) const { return {x[sub_ray], y[sub_ray], z[sub_ray]}; }
   // Relative radiant intensity of the lamp along a direction (slopes x / z, y / z); 1 on the axis.
   double Lobe(double slope_x, double slope_y) const;
 
   int width, height;
   int per_pixel;                    // sub-rays: 9 or 1
-  std::vector<float> x, y, z;       // [pixel * per_pixel + sub-ray] direction: unit, optical frame
+  std::vector<std::size_t> first_sub_ray;  // [pixel]
+  std::vector<float> x, y, z;       // [sub-ray] direction: unit, optical frame
   std::vector<float> lens;          // [pixel] vignetting: cos^4 of the angle to the axis (1 without lamp effect)
-  std::vector<float> lit_and_seen;  // [pixel * per_pixel + sub-ray] lens times lobe
+  std::vector<float> lit_and_seen;  // [sub-ray] lens times lobe
   std::vector<Board> boards;        // one at the lens, or two beside it
   double tan_half_x, tan_half_y;    // of the field of view
   double lobe_exponent;             // 0: even

@@ -2,47 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "sim/lanes.h"
+#include "sim/tof/sin_cos.h"
 
 namespace merlin::sim {
 namespace {
 
 constexpr float kNearest_m = 1e-3f;  // nothing is nearer to the pixel than its lens: keeps 1 / d^2 finite
 
-// Sine and cosine of many phases: Cody and Waite's reduction to [-pi/4, pi/4] and the minimax polynomials of Cephes
-// (Moshier, sinf and cosf), without branches, so that the compiler does several at a time. |phase| < 1e4; error < 1e-6.
-void SinCos(std::span<const float> phase, std::span<float> sine, std::span<float> cosine) {
-  constexpr float kRounder = 12582912.0f;  // 1.5 * 2^23: adding and taking it away rounds to a whole number
-  constexpr float kHalfPi1 = 1.5703125f, kHalfPi2 = 4.837512969970703125e-4f, kHalfPi3 = 7.549789948768648e-8f;
-  for (std::size_t i = 0; i < phase.size(); ++i) {
-    const float x = phase[i];
-    const float whole = (x * static_cast<float>(2.0 / std::numbers::pi) + kRounder) - kRounder;
-    const int quadrant = static_cast<int>(whole);
-    const float r = ((x - whole * kHalfPi1) - whole * kHalfPi2) - whole * kHalfPi3;
-    const float z = r * r;
-    const float s = r + r * z * (-1.6666654611e-1f + z * (8.3321608736e-3f - z * 1.9515295891e-4f));
-    const float c =
-        1.0f - 0.5f * z + z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
-    const float sine_part = (quadrant & 1) ? c : s, cosine_part = (quadrant & 1) ? s : c;
-    sine[i] = (quadrant & 2) ? -sine_part : sine_part;
-    cosine[i] = ((quadrant + 1) & 2) ? -cosine_part : cosine_part;
-  }
-}
-
-// Arrays that do not overlap, so that the compiler does several elements at a time.
-using In = const float* __restrict;
-using Out = float* __restrict;
+using In = const float*;
+using Out = float*;
 
 inline float Larger(float a, float b) { return a > b ? a : b; }  // by value: std::max's references stand in the way
-
-// The sub-rays of a row as the sums need them.
-struct RowWork {
-  std::vector<float> albedo, electrons, phase, sine, cosine;
-  std::array<std::vector<float>, 2> lit;  // by board
-  explicit RowWork(std::size_t n) : albedo(n), electrons(n), phase(n), sine(n), cosine(n) {
-    for (auto& of_board : lit) of_board.resize(n);
-  }
-};
 
 void GatherAlbedo(const RowHits& hits, const PhasorScale& scale, RowWork& work) {
   for (std::size_t i = 0; i < hits.geom.size(); ++i)
@@ -57,6 +29,7 @@ void LightFromLens(const RowHits& hits, const Optics& optics, std::size_t first,
   const In nx = hits.normal_x.data(), ny = hits.normal_y.data(), nz = hits.normal_z.data();
   const Out electrons = work.electrons.data(), phase = work.phase.data();
   const std::size_t count = hits.geom.size();
+  MERLIN_SIDE_BY_SIDE
   for (std::size_t i = 0; i < count; ++i) {
     const float range = Larger(range_m[i], kNearest_m);
     const float toward = nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i];
@@ -76,6 +49,7 @@ void LightFromBoards(const RowHits& hits, const Optics& optics, std::size_t firs
   const std::size_t count = hits.geom.size();
   const In lit_left = work.lit[0].data(), lit_right = work.lit[1].data();
   const float board_x = optics.boards[1].position.x();
+  MERLIN_SIDE_BY_SIDE
   for (std::size_t i = 0; i < count; ++i) {
     const float range = Larger(range_m[i], kNearest_m);
     const float x = range * dx[i], y = range * dy[i], z = range * dz[i];
@@ -103,15 +77,43 @@ void GatherShadows(const RowHits& hits, const MidHits& mid, std::span<const std:
 }
 
 void AddExtra(const RowHits& hits, const Optics& optics, const PhasorScale& scale, const ExtraReturn& extra,
-              std::size_t first, std::span<Phasors> out) {
+              std::size_t first, PhasorRow& out) {
   const std::size_t i = extra.sub_ray - first;
   if (hits.geom[i] != extra.geom) return;  // the pane has moved out of this sub-ray
   const double range_m = std::max(hits.range_m[i], kNearest_m) + extra.beyond_m;
   const double phase_rad = scale.wave_number_rad_per_m * range_m;
   const double electrons =
       scale.electrons_m2 * extra.strength * optics.lit_and_seen[extra.sub_ray] / (range_m * range_m);
-  out[i / static_cast<std::size_t>(optics.per_pixel)].Add(
-      static_cast<float>(electrons), static_cast<float>(std::cos(phase_rad)), static_cast<float>(std::sin(phase_rad)));
+  Phasors light;
+  light.Add(static_cast<float>(electrons), static_cast<float>(std::cos(phase_rad)),
+            static_cast<float>(std::sin(phase_rad)));
+  out.Add(i % static_cast<std::size_t>(optics.width), light);
+}
+
+// Adds width ways: electrons, cosine and sine of the first harmonic's phase.
+void AddWays(In electrons, In cosine, In sine, std::size_t width, PhasorRow& out) {
+  const Out total_e = out.total_e.data();
+  const Out re1 = out.re[0].data(), re3 = out.re[1].data(), re5 = out.re[2].data();
+  const Out im1 = out.im[0].data(), im3 = out.im[1].data(), im5 = out.im[2].data();
+  MERLIN_SIDE_BY_SIDE
+  for (std::size_t u = 0; u < width; ++u) {
+    const float e = electrons[u], c = cosine[u], s = sine[u];
+    const float c2 = c * c - s * s, s2 = 2.0f * c * s;
+    const float c3 = c2 * c - s2 * s, s3 = s2 * c + c2 * s;
+    const float c5 = c3 * c2 - s3 * s2, s5 = s3 * c2 + c3 * s2;
+    total_e[u] += e;
+    re1[u] += e * c, re3[u] += e * c3, re5[u] += e * c5;
+    im1[u] += e * s, im3[u] += e * s3, im5[u] += e * s5;
+  }
+}
+
+void Rotate(Out re, Out im, In cosine, In sine, std::size_t width) {
+  MERLIN_SIDE_BY_SIDE
+  for (std::size_t u = 0; u < width; ++u) {
+    const float turned = re[u] * cosine[u] - im[u] * sine[u];
+    im[u] = re[u] * sine[u] + im[u] * cosine[u];
+    re[u] = turned;
+  }
 }
 
 }  // namespace
@@ -148,33 +150,52 @@ Phasors& Phasors::operator+=(const Phasors& other) {
   return *this;
 }
 
-double Correlate(const Phasors& light, int k, double a3, double a5) {
-  const std::array<double, 3> weight{1.0, a3, a5};
-  double sum = 0.0;
+PhasorRow::PhasorRow(std::size_t width) : total_e(width) {
+  for (std::size_t h = 0; h < kHarmonics.size(); ++h) re[h].resize(width), im[h].resize(width);
+}
+
+void PhasorRow::Clear() {
+  std::ranges::fill(total_e, 0.0f);
+  for (std::size_t h = 0; h < kHarmonics.size(); ++h) std::ranges::fill(re[h], 0.0f), std::ranges::fill(im[h], 0.0f);
+}
+
+void PhasorRow::Add(std::size_t u, const Phasors& light) {
+  total_e[u] += light.total_e;
+  for (std::size_t h = 0; h < kHarmonics.size(); ++h) re[h][u] += light.re[h], im[h][u] += light.im[h];
+}
+
+void PhasorRow::Turn(std::span<const float> phase_rad) {
+  const std::size_t width = phase_rad.size();
+  std::vector<float> sine(width), cosine(width), sine_n(width), cosine_n(width), ones(width, 1.0f);
+  SinCos(phase_rad, sine, cosine);
+  PhasorRow turn(width);
+  AddWays(ones.data(), cosine.data(), sine.data(), width, turn);
+  for (std::size_t h = 0; h < kHarmonics.size(); ++h)
+    Rotate(re[h].data(), im[h].data(), turn.re[h].data(), turn.im[h].data(), width);
+}
+
+void PhasorRow::Correlate(int k, const std::array<float, 3>& weights, float scale, std::span<float> out) const {
+  std::ranges::fill(out, 0.0f);
   for (std::size_t h = 0; h < kHarmonics.size(); ++h) {
-    switch (kHarmonics[h] * k % 4) {  // Re(Z i^(n k))
-      case 0:
-        sum += weight[h] * light.re[h];
-        break;
-      case 1:
-        sum -= weight[h] * light.im[h];
-        break;
-      case 2:
-        sum -= weight[h] * light.re[h];
-        break;
-      default:
-        sum += weight[h] * light.im[h];
-    }
+    const int quarter = kHarmonics[h] * k % 4;  // Re(Z i^quarter)
+    const In part = quarter % 2 == 0 ? re[h].data() : im[h].data();
+    const float weight = scale * weights[h] * (quarter == 1 || quarter == 2 ? -1.0f : 1.0f);
+    const Out sum = out.data();
+    MERLIN_SIDE_BY_SIDE
+    for (std::size_t u = 0; u < out.size(); ++u) sum[u] += weight * part[u];
   }
-  return sum;
+}
+
+RowWork::RowWork(std::size_t width, std::size_t per_pixel) {
+  for (auto* values : {&albedo, &electrons, &phase, &lit[0], &lit[1], &sine, &cosine})
+    values->resize(width * per_pixel);
 }
 
 void RowPhasors(const RowHits& hits, const Optics& optics, const PhasorScale& scale, const MidHits& mid,
-                std::span<const std::uint8_t> shadow, std::span<const ExtraReturn> extra, int row,
-                std::span<Phasors> out) {
-  const std::size_t n = static_cast<std::size_t>(optics.per_pixel);
-  const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(optics.width) * n;
-  RowWork work(hits.geom.size());
+                std::span<const std::uint8_t> shadow, std::span<const ExtraReturn> extra, int row, RowWork& work,
+                PhasorRow& out) {
+  const std::size_t n = static_cast<std::size_t>(optics.per_pixel), width = static_cast<std::size_t>(optics.width);
+  const std::size_t first = static_cast<std::size_t>(row) * width * n;
   GatherAlbedo(hits, scale, work);
   const float electrons_m2 = static_cast<float>(scale.electrons_m2);
   const float wave_number = static_cast<float>(scale.wave_number_rad_per_m);
@@ -185,10 +206,9 @@ void RowPhasors(const RowHits& hits, const Optics& optics, const PhasorScale& sc
     LightFromLens(hits, optics, first, electrons_m2, wave_number, work);
   }
   SinCos(work.phase, work.sine, work.cosine);
-  for (std::size_t u = 0; u < out.size(); ++u) {
-    out[u] = {};
-    for (std::size_t i = u * n; i < (u + 1) * n; ++i) out[u].Add(work.electrons[i], work.cosine[i], work.sine[i]);
-  }
+  out.Clear();
+  for (std::size_t s = 0; s < n; ++s)
+    AddWays(work.electrons.data() + s * width, work.cosine.data() + s * width, work.sine.data() + s * width, width, out);
   for (const ExtraReturn& one : extra) AddExtra(hits, optics, scale, one, first, out);
 }
 

@@ -28,9 +28,6 @@ struct Phasors {
   Phasors& operator+=(const Phasors& other);
 };
 
-// Re(Z_1 e^(j tau) + a3 Z_3 e^(3 j tau) + a5 Z_5 e^(5 j tau)), tau = k pi / 2.
-double Correlate(const Phasors& light, int k, double a3, double a5);
-
 // What turns a hit into electrons: N = scale albedo lit_and_seen cos / d^2.
 struct PhasorScale {
   double electrons_m2 = 0.0;         // K T / sub-rays of a pixel
@@ -38,10 +35,31 @@ struct PhasorScale {
   std::span<const float> albedo;     // [geom], towards the lamp: a retro-reflector's is above 1
 };
 
-// The phasors of one row of pixels. shadow: [pixel * per_pixel + sub-ray] bit b: board b does not reach what that
-// sub-ray met at mid-exposure; empty: no shadows. extra: of this row.
+// The phasors of one row of pixels, array by array, so that the compiler does several pixels at a time.
+struct PhasorRow {
+  explicit PhasorRow(std::size_t width);
+  std::vector<float> total_e;
+  std::array<std::vector<float>, 3> re, im;
+
+  void Clear();
+  void Add(std::size_t u, const Phasors& light);
+  // Turns harmonic n of pixel u by n times phase_rad[u].
+  void Turn(std::span<const float> phase_rad);
+  // Re(Z_1 e^(j tau) + a3 Z_3 e^(3 j tau) + a5 Z_5 e^(5 j tau)) times scale, tau = k pi / 2.
+  void Correlate(int k, const std::array<float, 3>& weights, float scale, std::span<float> out) const;
+};
+
+// Room to work in, of one row.
+struct RowWork {
+  RowWork(std::size_t width, std::size_t per_pixel);
+  std::vector<float> albedo, electrons, phase, sine, cosine;  // [sub-ray of the row]
+  std::array<std::vector<float>, 2> lit;                      // the same, by board
+};
+
+// shadow: [sub-ray] bit b: board b does not reach what that sub-ray met at mid-exposure; empty: no
+// shadows. extra: of this row.
 void RowPhasors(const RowHits& hits, const Optics& optics, const PhasorScale& scale, const MidHits& mid,
-                std::span<const std::uint8_t> shadow, std::span<const ExtraReturn> extra, int row,
-                std::span<Phasors> out);
+                std::span<const std::uint8_t> shadow, std::span<const ExtraReturn> extra, int row, RowWork& work,
+                PhasorRow& out);
 
 }  // namespace merlin::sim

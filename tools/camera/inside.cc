@@ -44,7 +44,7 @@ std::optional<std::string> GeomAround(const mjModel* model, const mjData* data, 
     std::map<int, int> crossings;
     std::set<int> geoms;
     for (std::size_t i = 0; i < group.triangles.size(); ++i) {
-      const int geom = group.geom_of_triangle[i];
+      const int geom = group.faces[static_cast<std::size_t>(group.face_of_triangle[i])].geom;
       geoms.insert(geom);
       if (model->geom_type[geom] != mjGEOM_MESH) continue;
       const auto corner = [&](int k) -> Eigen::Vector3d {
