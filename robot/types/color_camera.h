@@ -23,7 +23,7 @@ struct ColorSettings {
 // The data sheet of one model; values and their origin stand in models/cameras/<name>.yaml.
 struct ColorCameraSheet {
   std::string name;
-  CameraModel camera;
+  CameraModel camera{};
   double rate_max_hz = 0.0;
   double latency_s = 0.0;           // from mid-exposure to the stack
   double full_well_e = 0.0;         // electrons at which a pixel clips; white (255) at gain 1

@@ -51,8 +51,9 @@ Taps Chip::Expose(const PixelLight& light, const PixelTraits& pixel, double inte
 
   Taps taps{.a_e = 0.5 * (total_e + correlation_e) * (1.0 + pixel.gain) + pixel.offset_e,
             .b_e = 0.5 * (total_e - correlation_e) * (1.0 - pixel.gain) + pixel.offset_e};
-  if (effects_.sbi && has_sbi_)
+  if (effects_.sbi && has_sbi_ && !pixel.hot)  // what leaks into a hot pixel is no light that both taps share
     taps.suppressed_e = std::clamp(std::min(taps.a_e, taps.b_e) - sbi_onset_e_, 0.0, sbi_max_e_);
+  if (effects_.noise) taps.suppression_variance_e2 = sbi_noise_ * taps.suppressed_e;
   for (double* tap : {&taps.a_e, &taps.b_e}) {
     *tap -= taps.suppressed_e;
     if (effects_.saturation && *tap > full_well_e_) taps.saturated = true;
@@ -61,7 +62,7 @@ Taps Chip::Expose(const PixelLight& light, const PixelTraits& pixel, double inte
       *tap *= 1.0 - response_cubic_ * filling * filling;
     }
     if (effects_.saturation) *tap = std::min(*tap, full_well_e_);
-    if (effects_.noise) *tap = Noisy(*tap, sbi_noise_ * taps.suppressed_e, random);
+    if (effects_.noise) *tap = Noisy(*tap, taps.suppression_variance_e2, random);
     if (effects_.adc) *tap = Converted(*tap);
   }
   return taps;
@@ -88,10 +89,13 @@ PhaseReading DecodePhase(const Taps taps[4]) {
 
 bool Inconsistent(const Taps taps[4], double amplitude_e, double read_noise_e) {
   const auto D = [taps](int k) { return taps[k].a_e - taps[k].b_e; };
-  double collected_e = 0.0;
-  for (int k = 0; k < 4; ++k) collected_e += taps[k].a_e + taps[k].b_e;
+  double collected_e = 0.0, suppression_e2 = 0.0;  // mean of the taps' sums and variances
+  for (int k = 0; k < 4; ++k) {
+    collected_e += 0.25 * (taps[k].a_e + taps[k].b_e);
+    suppression_e2 += 0.25 * 2.0 * taps[k].suppression_variance_e2;
+  }
   const double residual_e = std::max(std::abs(D(0) + D(2)), std::abs(D(1) + D(3)));
-  const double sigma_e = std::sqrt(2.0 * (std::max(0.0, collected_e / 4.0) + 2.0 * read_noise_e * read_noise_e));
+  const double sigma_e = std::sqrt(2.0 * (std::max(0.0, collected_e) + suppression_e2 + 2.0 * read_noise_e * read_noise_e));
   return residual_e > 0.4 * 2.0 * amplitude_e && residual_e > 4.0 * sigma_e;
 }
 

@@ -199,7 +199,7 @@ void ExpectAgreement(const Mujoco& world, const RayScene& scene, const std::stri
       if (hits[i].geom != geoms[i]) continue;  // two geoms in one place
       Eigen::Vector3d normal(normals.data() + 3 * i);
       if (normal.dot(direction) > 0.0) normal = -normal;
-      EXPECT_LE(hits[i].normal.dot(directions[i]), 0.0f) << what;
+      EXPECT_LE(hits[i].normal.dot(rays[i].direction), 0.0f) << what;
       EXPECT_NEAR(hits[i].normal.norm(), 1.0f, 1e-5f) << what;
       if ((hits[i].normal.cast<double>() - normal).norm() > 5e-3) {
         EXPECT_TRUE(IsNearEdge(world, origin, direction)) << what << ": normal " << hits[i].normal.transpose();

@@ -57,7 +57,7 @@ DepthFrame ReadFrame(int number) {
       frame.flags.push_back(valid ? 0 : kInvalid);
     }
   }
-  frame.intensity = frame.amplitude;
+  frame.intensity.assign(frame.size(), 128);
   return frame;
 }
 
