@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "pixel.h"
+#include "tests/sim/tof/pixel.h"
 
 namespace merlin::sim {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pixel.h"
+#include "tests/sim/tof/pixel.h"
 
 namespace merlin::sim {
 namespace {
