@@ -14,7 +14,7 @@ namespace merlin {
 
 struct Compass3dmConfig {
   SerialConfig serial{.port = "/dev/ttyUSB0", .baud = 9600};
-  compass_3dm::PollerConfig poll;
+  compass_3dm::PollerConfig poll{};
   double north_yaw_rad = 0.0;       // yaw of magnetic north in the map's frame, [-pi, pi]; of the room
   bool thesis_arithmetic = false;   // angles as MERLIN's own software took them, up to 1 deg off
   double sampling_latency_s = 0.0;  // from the last bit of the question to sampling, [0, 0.035] (guess)

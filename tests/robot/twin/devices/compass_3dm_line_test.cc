@@ -68,8 +68,7 @@ TEST(Compass3dmLine, ReadsTwelveTimesASecondAndStampsTheSamplingInstant) {
   Line line;
   line.Run(std::chrono::seconds(10));
   EXPECT_NEAR(static_cast<double>(line.readings.size()), 125.0, 2.0);
-  for (std::size_t i = 1; i < line.readings.size(); ++i)
-    EXPECT_GT(line.readings[i].stamp, line.readings[i - 1].stamp);
+  for (std::size_t i = 1; i < line.readings.size(); ++i) EXPECT_GT(line.readings[i].stamp, line.readings[i - 1].stamp);
   for (std::size_t i = 0; i < line.readings.size(); ++i)
     EXPECT_NEAR(Seconds(line.readings[i].stamp - line.sampled[i]), 0.0, 0.0021);  // both ends look once a millisecond
   EXPECT_EQ(line.host.status().health, Health::kOk);
