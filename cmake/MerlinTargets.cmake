@@ -12,7 +12,7 @@ target_compile_options(merlin_options INTERFACE -Wall -Wextra -Wpedantic -Wshado
 target_compile_options(merlin_options INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>)
 # Sanitized code confuses GCC's uninitialised-value analysis (its manual says so under -fsanitize), in <regex> for one.
-if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   target_compile_options(merlin_options INTERFACE -Wno-maybe-uninitialized)
 endif()
 add_library(merlin::options ALIAS merlin_options)
