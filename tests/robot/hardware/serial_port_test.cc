@@ -2,6 +2,7 @@
 #include "robot/hardware/serial_port.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "robot/twin/devices/pseudo_terminal.h"
 #include "robot/types/error.h"
@@ -75,7 +76,8 @@ TEST(SerialPort, CarriesEveryByteAsItIs) {
 }
 
 TEST(SerialPort, NoticesTheUnplugAndOpensAgain) {
-  const std::filesystem::path link = std::filesystem::path(testing::TempDir()) / "merlin_serial_port_test";
+  const std::filesystem::path link =
+      std::filesystem::path(testing::TempDir()) / ("merlin_serial_" + std::to_string(getpid()));
   PseudoTerminal terminal(link);
   SerialPort port({.port = link, .baud = 9600});
   port.Open();
