@@ -22,7 +22,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   target_compile_options(merlin_options INTERFACE -Wno-restrict -Wno-array-bounds)
 endif()
 # Sanitized code confuses GCC's uninitialised-value analysis (its manual says so under -fsanitize), in <regex> for one.
-if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   target_compile_options(merlin_options INTERFACE -Wno-maybe-uninitialized)
 endif()
 add_library(merlin::options ALIAS merlin_options)

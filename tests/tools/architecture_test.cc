@@ -19,7 +19,12 @@ using Strings = std::vector<std::string>;
 const std::vector<std::pair<std::string, Strings>> kRoomsAndWhatTheyKnow{
     {"robot/types/", {"robot/types/"}},
     {"robot/hal/", {"robot/hal/", "robot/types/"}},
+    {"robot/protocol/", {"robot/protocol/", "robot/types/"}},
     {"robot/description/", {"robot/description/", "robot/types/"}},
+    {"robot/hardware/",
+     {"robot/hardware/", "robot/hal/", "robot/types/", "robot/protocol/", "robot/description/"}},
+    {"robot/twin/devices/",
+     {"robot/twin/devices/", "robot/twin/", "robot/hal/", "robot/types/", "robot/protocol/", "sim/"}},
     {"robot/twin/", {"robot/twin/", "robot/hal/", "robot/types/", "sim/"}},
     {"sim/", {"sim/", "robot/types/"}},
     {"perception/", {"perception/", "robot/types/"}},

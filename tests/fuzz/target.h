@@ -1,0 +1,26 @@
+// What a fuzz target is: libFuzzer's function, seeds for the driver without libFuzzer, and a check that ends the
+// program.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "robot/protocol/bytes.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace merlin::fuzz {
+
+// Well-formed inputs, to be mutated.
+std::vector<Bytes> Seeds();
+
+// Also where asserts are off.
+inline void Expect(bool holds, const char* what) {
+  if (holds) return;
+  std::fprintf(stderr, "broken: %s\n", what);
+  std::abort();
+}
+
+}  // namespace merlin::fuzz
