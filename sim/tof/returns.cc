@@ -72,8 +72,7 @@ PaneOptics PaneAt(double cosine, double glass_transmission) {
   const double cosine_inside = std::sqrt(1.0 - sine_inside * sine_inside);
   const double s = (cosine - kGlassIndex * cosine_inside) / (cosine + kGlassIndex * cosine_inside);
   const double p = (kGlassIndex * cosine - cosine_inside) / (kGlassIndex * cosine + cosine_inside);
-  const double face = 0.5 * (s * s + p * p);
-  const double reflected = 2.0 * face / (1.0 + face);
+  const double reflected = s * s / (1.0 + s * s) + p * p / (1.0 + p * p);  // mean of both polarisations' 2 R / (1 + R)
   return {.reflected = reflected, .passed = (1.0 - reflected) * std::pow(glass_transmission, 1.0 / cosine_inside)};
 }
 

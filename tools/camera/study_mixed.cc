@@ -107,7 +107,13 @@ Figure Glass(const StudyCamera& of) {
                  p = (kIndex * cos_i - cos_t) / (kIndex * cos_i + cos_t);
     const double through =
         0.5 * ((1 - s * s) / (1 + s * s) + (1 - p * p) / (1 + p * p)) * std::pow(kTransmission, 1.0 / cos_t);
-    return Return(camera, kDirt * cos_i, kPane_m) + through * through * Return(camera, kAlbedo, kWall_m);
+    Phasor sum = Return(camera, kDirt * cos_i, kPane_m) + through * through * Return(camera, kAlbedo, kWall_m);
+    const double cos_mirrored = -std::cos(2.0 * angle_rad);  // beyond 45 degrees the mirrored ray meets the wall, too
+    if (cos_mirrored > 0.0) {
+      const double mirrored = s * s / (1 + s * s) + p * p / (1 + p * p);
+      sum += mirrored * mirrored * Return(camera, kAlbedo * cos_mirrored, kPane_m + (kWall_m - kPane_m) / cos_mirrored);
+    }
+    return sum;
   };
   const double degree = kPi / 180.0;
   for (const double angle_deg : Steps(0.0, 80.0, 200)) {

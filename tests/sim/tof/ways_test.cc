@@ -137,20 +137,20 @@ TEST(TofScatter, PullsDarkWallsTowardsABrightPlateAsTheMeanPhasorDoes) {
   }
 }
 
-// Fresnel, written out: reflectance of one face at this angle of incidence.
-double Face(double angle_rad) {
+// Fresnel, written out for both polarisations: reflectance of a slab of two faces at this angle of incidence.
+double Slab(double angle_rad) {
   const double inside_rad = std::asin(std::sin(angle_rad) / 1.52);
-  if (angle_rad == 0.0) return std::pow(0.52 / 2.52, 2);
-  const double s = std::sin(angle_rad - inside_rad) / std::sin(angle_rad + inside_rad);
-  const double p = std::tan(angle_rad - inside_rad) / std::tan(angle_rad + inside_rad);
-  return 0.5 * (s * s + p * p);
+  const double normal = std::pow(0.52 / 2.52, 2);
+  const double s = angle_rad == 0.0 ? normal : std::pow(std::sin(angle_rad - inside_rad) / std::sin(angle_rad + inside_rad), 2);
+  const double p = angle_rad == 0.0 ? normal : std::pow(std::tan(angle_rad - inside_rad) / std::tan(angle_rad + inside_rad), 2);
+  return 0.5 * (2 * s / (1 + s) + 2 * p / (1 + p));
 }
 
 TEST(TofGlass, ReflectsAndPassesAsFresnelSays) {
   EXPECT_NEAR(PaneAt(1.0, 1.0).reflected, 0.082, 0.0005);
   EXPECT_NEAR(PaneAt(1.0, 1.0).passed, 0.918, 0.0005);
   for (const double angle_deg : {0.0, 10.0, 45.0, 56.66, 80.0}) {
-    const double face = Face(angle_deg * kPi / 180.0), slab = 2 * face / (1 + face);
+    const double slab = Slab(angle_deg * kPi / 180.0);
     const double inside_rad = std::asin(std::sin(angle_deg * kPi / 180.0) / 1.52);
     const PaneOptics pane = PaneAt(std::cos(angle_deg * kPi / 180.0), 0.89);
     EXPECT_NEAR(pane.reflected, slab, 1e-9) << angle_deg;
@@ -168,7 +168,7 @@ TEST(TofGlass, MixesThePaneWithWhatIsBehindIt) {
     for (const double wall_m : {2.0, 4.0, 6.5}) {
       const Stage stage({Wall(wall_m, kWallAlbedo),
                          {{1.0, 0, 0}, {0.0002, 20.0, 2.0}, {.nir_albedo = kDirt, .glass_transmission = 0.89}, angle_deg}});
-      const double angle_rad = angle_deg * kPi / 180.0, face = Face(angle_rad), slab = 2 * face / (1 + face);
+      const double angle_rad = angle_deg * kPi / 180.0, slab = Slab(angle_rad);
       const double passed = (1 - slab) * std::pow(0.89, 1 / std::sqrt(1 - std::pow(std::sin(angle_rad) / 1.52, 2)));
       std::vector<Way> ways{{kDirt * std::cos(angle_rad), 1.0}, {passed * passed * kWallAlbedo / (wall_m * wall_m), wall_m}};
       if (angle_deg > 45.0) {  // mirrored onwards, to the wall, at this angle to its normal
