@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/videoio.hpp>
+#include <utility>
 #include <vector>
 
 #include "robot/types/error.h"
@@ -29,8 +30,8 @@ void KeepFfmpegQuiet() { ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
 
 }  // namespace
 
-ColorCapture::ColorCapture(const ColorCaptureConfig& config, const ColorCameraInfo& info,
-                           const ColorSettings& settings, const Clock& clock)
+ColorCapture::ColorCapture(const ColorCaptureConfig& config, const ColorCameraInfo& info, const ColorSettings& settings,
+                           const Clock& clock)
     : config_(config),
       info_(info),
       clock_(clock),
@@ -126,6 +127,7 @@ void ColorCapture::Deliver(const cv::Mat& picture, Time arrival) {
                    .bgr = {picture.datastart, picture.dataend}};
   last_stamp_ = frame.stamp;
   mailbox_.Put(std::move(frame), arrival);
+  lost_once_ = false;
 }
 
 void ColorCapture::Lose(DeviceStatus::Health health, std::stop_token stop) {
@@ -133,6 +135,7 @@ void ColorCapture::Lose(DeviceStatus::Health health, std::stop_token stop) {
   was_lost_ = true;
   if (health == DeviceStatus::Health::kFaulty) mailbox_.CountGarbage();
   if (health != DeviceStatus::Health::kOk) mailbox_.Become(health, clock_.Now());
+  if (!std::exchange(lost_once_, true)) return;  // once at once: it may have been a hiccup
   std::unique_lock lock(mutex_);
   stopping_.wait_for(lock, stop, FromSeconds(config_.reopen_s), [] { return false; });
 }

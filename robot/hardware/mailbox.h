@@ -1,4 +1,4 @@
-// Where a driver's thread leaves measurements and the stack takes them: neither waits for the other. Keeps the status, too.
+// Where a driver's thread leaves measurements and the stack takes them; neither waits for the other. Knows the status.
 #pragma once
 
 #include <cstddef>

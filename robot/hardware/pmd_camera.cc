@@ -71,7 +71,6 @@ class Generation2 final : public PmdCamera, private Library {
                 config_.processing_plugin.c_str(), config_.processing_argument.c_str()),
           "pmdOpen");
     handle_ = handle;
-    second_frequency_set_ = false;
     // Some cameras describe themselves only once they have a frame.
     PmdDescription description{};
     if (describe_(handle_, &description) != kPmdOk) Update();

@@ -1,5 +1,5 @@
-// A ToF camera through its maker's library (robot/protocol/pmd_api.h), the same for both generations of its calls. Every
-// call may block and throws MachineError with the library's own words where it fails.
+// A ToF camera through its maker's library (robot/protocol/pmd_api.h), the same for both generations of its calls.
+// Every call may block and throws MachineError with the library's own words where it fails.
 #pragma once
 
 #include <memory>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "robot/types/error.h"
 
@@ -22,8 +23,12 @@ DepthSettings Used(const DepthSettings& told, const DepthSettings& asked) {
   return used;
 }
 
-std::uint8_t Grey(double intensity) {
-  return static_cast<std::uint8_t>(std::clamp(std::round(intensity), 0.0, 255.0));
+std::uint8_t Grey(double intensity) { return static_cast<std::uint8_t>(std::clamp(std::round(intensity), 0.0, 255.0)); }
+
+// Where the library gives no flags: what the images themselves tell.
+std::uint8_t FlagsOf(float range_m, float amplitude_e, const DepthCameraSheet& sheet) {
+  if (range_m == 0.0f) return kInvalid;
+  return amplitude_e < sheet.low_signal_amplitude_e ? kLowSignal : 0;
 }
 
 }  // namespace
@@ -70,8 +75,7 @@ void TofCamera::Run(std::stop_token stop) {
       Lose(DeviceStatus::Health::kFaulty, stop);
     } catch (const MachineError&) {
       // A camera that is there and gives no frame is silent, which the mailbox notices; one that is not is absent.
-      if (open_) Lose(DeviceStatus::Health::kOk, stop);
-      else Lose(DeviceStatus::Health::kAbsent, stop);
+      Lose(open_ ? DeviceStatus::Health::kOk : DeviceStatus::Health::kAbsent, stop);
     }
   }
 }
@@ -118,13 +122,12 @@ void TofCamera::Deliver(const PmdFrame& raw, Time arrival) {
     }
     frame.amplitude[i] = static_cast<float>(raw.amplitude[i] * config_.electrons_per_amplitude);
     frame.intensity[i] = Grey(raw.intensity[i] * config_.grey_per_intensity);
-    if (!raw.flags.empty()) frame.flags[i] = static_cast<std::uint8_t>(raw.flags[i]);
-    // Without flags: what the images themselves tell.
-    else if (raw.range_m[i] == 0.0f) frame.flags[i] = kInvalid;
-    else if (frame.amplitude[i] < info_.sheet.low_signal_amplitude_e) frame.flags[i] = kLowSignal;
+    frame.flags[i] = raw.flags.empty() ? FlagsOf(raw.range_m[i], frame.amplitude[i], info_.sheet)
+                                       : static_cast<std::uint8_t>(raw.flags[i]);
   }
   last_stamp_ = frame.stamp;
   mailbox_.Put(std::move(frame), arrival);
+  lost_once_ = false;
 }
 
 void TofCamera::Lose(DeviceStatus::Health health, std::stop_token stop) {
@@ -133,6 +136,7 @@ void TofCamera::Lose(DeviceStatus::Health health, std::stop_token stop) {
   was_lost_ = true;
   if (health == DeviceStatus::Health::kFaulty) mailbox_.CountGarbage();
   if (health != DeviceStatus::Health::kOk) mailbox_.Become(health, clock_.Now());
+  if (!std::exchange(lost_once_, true)) return;  // once at once: it may have been a hiccup
   std::unique_lock lock(mutex_);
   stopping_.wait_for(lock, stop, FromSeconds(config_.reopen_s), [] { return false; });
 }

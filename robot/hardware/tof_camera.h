@@ -1,5 +1,5 @@
-// The real ToF camera: its maker's library on a thread of its own, which fetches frames, corrects their stamps and reopens
-// the camera when it is lost.
+// The real ToF camera: its maker's library on a thread of its own, which fetches frames, corrects their stamps and
+// reopens the camera when it is lost.
 #pragma once
 
 #include <condition_variable>
@@ -16,10 +16,10 @@ namespace merlin {
 
 struct TofCameraConfig {
   PmdCameraConfig pmd;
-  double electrons_per_amplitude = 1.0;  // of the library's amplitude; found by the noise law on a wall, 1: the emulation
-  double grey_per_intensity = 1.0;       // 255 is the full well; clamped to 0 .. 255
+  double electrons_per_amplitude = 1.0;  // of the library's amplitude; from the noise on a wall; the emulation's: 1
+  double grey_per_intensity = 1.0;       // of the library's intensity; 255 is the full well, beyond is clamped
   double silent_after_s = 0.5;           // without a frame the camera counts as silent
-  double reopen_s = 0.5;                 // between attempts to open a lost camera
+  double reopen_s = 0.5;                 // between attempts to open a lost camera; the first is made at once
 };
 
 template <class Visitor>
@@ -34,7 +34,7 @@ void Visit(Visitor& v, TofCameraConfig& c) {
 class TofCamera final : public DepthCamera {
  public:
   // Opens library and camera. Throws InputError for a library that is none or lacks calls, a picture that does not fit
-  // the sheet, or invalid settings; MachineError where the camera cannot be opened. Now() is called from another thread.
+  // the sheet, or invalid settings; MachineError where the camera cannot be opened. Another thread calls Now(), too.
   TofCamera(const TofCameraConfig& config, const DepthCameraInfo& info, const DepthSettings& settings,
             const Clock& clock);
   ~TofCamera() override;
@@ -67,6 +67,7 @@ class TofCamera final : public DepthCamera {
   std::unique_ptr<PmdCamera> camera_;
   bool open_ = false;
   bool was_lost_ = false;
+  bool lost_once_ = false;  // and nothing came since
   DepthSettings asked_;
   Time last_stamp_ = Time::min();
   std::uint64_t index_ = 0;

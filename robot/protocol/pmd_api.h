@@ -1,6 +1,6 @@
 // The calls of the ToF camera maker's library, declared by us: the maker's own headers are not ours to ship. These
-// declarations follow the shapes that public programs call (names, order and kind of the arguments), nothing else of the
-// maker's. Where such a program does not show it (the order of the description's fields), the layout is ours, and a
+// declarations follow the shapes that public programs call (names, order and kind of the arguments), nothing else of
+// the maker's. Where such a program does not show it (the order of the description's fields), the layout is ours, and a
 // library that lays it out otherwise needs PmdDescription changed here.
 #pragma once
 
@@ -24,9 +24,9 @@ struct PmdDescription {
   unsigned int integration_us[4];  // one an exposure; 0: not used
   unsigned int frequency_hz[4];
   int offset[4];
-  unsigned int pixel_origin;       // 0: upper left
+  unsigned int pixel_origin;  // 0: upper left
   unsigned int stamp_high, stamp_low;
-  unsigned int reserved[47];       // room for a library whose description is longer: 256 bytes in all
+  unsigned int reserved[47];  // room for a library whose description is longer: 256 bytes in all
 };
 static_assert(sizeof(PmdDescription) == 256);
 
@@ -37,8 +37,8 @@ using PmdOpen = int(PmdHandle* handle, const char* source_plugin, const char* so
 using PmdClose = int(PmdHandle handle);
 using PmdUpdate = int(PmdHandle handle);  // waits for the next frame
 using PmdSetIntegrationTime = int(PmdHandle handle, unsigned int index, unsigned int time_us);
-using PmdGetValidIntegrationTime = int(PmdHandle handle, unsigned int* valid_us, unsigned int index,
-                                       PmdProximity which, unsigned int time_us);
+using PmdGetValidIntegrationTime = int(PmdHandle handle, unsigned int* valid_us, unsigned int index, PmdProximity which,
+                                       unsigned int time_us);
 using PmdSetModulationFrequency = int(PmdHandle handle, unsigned int index, unsigned int frequency_hz);
 using PmdGetValidModulationFrequency = int(PmdHandle handle, unsigned int* valid_hz, unsigned int index,
                                            PmdProximity which, unsigned int frequency_hz);
@@ -55,7 +55,7 @@ using PmdProcessingCommand = int(PmdHandle handle, char* answer, std::size_t byt
 using PmdGetLastError = int(PmdHandle handle, char* text, std::size_t bytes);  // handle 0: of pmdOpen
 
 // Generation 1, MiniSDK 1, where it differs: numbers are doubles in memory of the library, valid until the next update;
-// no index, frequencies in MHz, the first camera on the FireWire bus. It tells no size, no flags and no settings in use.
+// no index, frequencies in MHz, the first camera on the FireWire bus. It tells no size, flags or settings.
 using Pmd1ConnectFireWire = int(PmdHandle* handle);
 using Pmd1SetIntegrationTime = int(PmdHandle handle, unsigned int time_us);
 using Pmd1SetModulationFrequency = int(PmdHandle handle, unsigned int frequency_mhz);

@@ -36,7 +36,7 @@ void ConnectionServer::Accept() {
     Connection& connection = connections_.emplace_back(socket);
     connection.thread = std::thread([this, &connection] {
       serve_(connection.socket);
-      ::shutdown(connection.socket, SHUT_RDWR);  // the other end learns it now; the number is freed when this is forgotten
+      ::shutdown(connection.socket, SHUT_RDWR);  // the other end learns it now; Forget frees the number
       connection.over = true;
     });
   }

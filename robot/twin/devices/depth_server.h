@@ -17,8 +17,8 @@ class DepthServer {
  public:
   using OnSettings = std::function<void(const DepthSettings&)>;
 
-  // path: of the socket, the source argument of pmdOpen. on_settings: called on a thread of the server with settings that
-  // the sheet allows; what it throws as InputError is refused. Throws MachineError where it cannot listen.
+  // path: of the socket, the source argument of pmdOpen. on_settings: called on a thread of the server with settings
+  // that the sheet allows; what it throws as InputError is refused. Throws MachineError where it cannot listen.
   DepthServer(const std::string& path, const DepthCameraSheet& sheet, const DepthSettings& settings,
               OnSettings on_settings);
   ~DepthServer();

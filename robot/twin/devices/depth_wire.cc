@@ -122,7 +122,8 @@ std::optional<WireMessage> ReadFrame(std::span<const std::uint8_t> payload) {
   if (!IsSize(frame.columns, frame.rows)) return std::nullopt;
   const std::size_t pixels = static_cast<std::size_t>(frame.columns) * frame.rows;
   if (payload.size() != kFrameHeadBytes + kPixelBytes * pixels) return std::nullopt;
-  frame.range_m.resize(pixels), frame.amplitude.resize(pixels), frame.intensity.resize(pixels), frame.flags.resize(pixels);
+  frame.range_m.resize(pixels), frame.amplitude.resize(pixels);
+  frame.intensity.resize(pixels), frame.flags.resize(pixels);
   read(frame.range_m), read(frame.amplitude), read(frame.intensity), read(frame.flags);
   return frame;
 }

@@ -2,8 +2,8 @@
 // same machine at both ends, little-endian.
 //
 //   header, 12 bytes: 'M' 'P' 'M' 'D', u16 version (1), u16 kind, u32 bytes of payload
-//   hello   1, server  u16 columns, u16 rows, u32 shortest and longest integration [us], u32 count, count x u32 frequency
-//                      [Hz], settings (as in set), 8 x f64: fx fy cx cy k1 k2 p1 p2
+//   hello   1, server  u16 columns, u16 rows, u32 shortest and longest integration [us], u32 count,
+//                      count x u32 frequency [Hz], settings (as in set), 8 x f64: fx fy cx cy k1 k2 p1 p2
 //   update  2, client  asks for the next frame
 //   frame   3, server  u16 columns, u16 rows, u64 stamp [ns], settings; then images: f32 range [m], f32 amplitude [e],
 //                      u8 intensity, u8 flags

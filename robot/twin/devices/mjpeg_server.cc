@@ -42,8 +42,7 @@ std::vector<std::uint8_t> Part(const ColorFrame& frame, int quality) {
   const cv::Mat picture(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.bgr.data()));
   std::vector<std::uint8_t> jpeg;
   cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality});
-  const std::string head =
-      "Content-Type: image/jpeg\r\nContent-Length: " + std::to_string(jpeg.size()) + "\r\n\r\n";
+  const std::string head = "Content-Type: image/jpeg\r\nContent-Length: " + std::to_string(jpeg.size()) + "\r\n\r\n";
   const std::string end = std::string("\r\n--") + kBoundary + "\r\n";
   std::vector<std::uint8_t> part(head.begin(), head.end());
   part.insert(part.end(), jpeg.begin(), jpeg.end());

@@ -25,7 +25,7 @@ class PmdClient {
   void Update();
   void Set(const WireSettings& settings);
   const WireHello& hello() const { return hello_; }  // with the settings in force
-  const WireFrame& frame() const;  // of the last update
+  const WireFrame& frame() const;                    // of the last update
   const WireFrame* last_frame() const { return frame_ ? &*frame_ : nullptr; }
 
  private:

@@ -1,6 +1,7 @@
-// The twin's stand-in for the ToF camera maker's library, generation 2 of the calls (robot/protocol/pmd_api.h). The source
-// argument of pmdOpen is the path of the running twin's DepthServer; plugins and the processing argument are ignored.
-// Amplitudes are electrons, intensities 0 .. 255 at the full well. No raw data, and no commands: they are the maker's own.
+// The twin's stand-in for the ToF camera maker's library, generation 2 of the calls (robot/protocol/pmd_api.h). The
+// source argument of pmdOpen is the path of the running twin's DepthServer; plugins and the processing argument are
+// ignored. Amplitudes are electrons, intensities 0 .. 255 at the full well. No raw data, and no commands: they are the
+// maker's own.
 #include <algorithm>
 #include <cstdlib>
 #include <type_traits>
@@ -25,19 +26,19 @@ unsigned int Valid(std::vector<std::uint32_t> candidates, PmdProximity which, un
     return (which == kPmdAtLeast && valid < value) || (which == kPmdAtMost && valid > value);
   });
   if (candidates.empty()) throw MachineError("no valid value on that side");
-  return *std::ranges::min_element(candidates, {}, [=](unsigned int valid) {
-    return valid > value ? valid - value : value - valid;
-  });
+  return *std::ranges::min_element(candidates, {},
+                                   [=](unsigned int valid) { return valid > value ? valid - value : value - valid; });
 }
 
 int NotHere(PmdHandle handle, const char* what) {
-  return Clients().Do(handle, [=](PmdClient&) { throw MachineError(std::string("the emulated camera has no ") + what); });
+  return Clients().Do(handle,
+                      [=](PmdClient&) { throw MachineError(std::string("the emulated camera has no ") + what); });
 }
 
 }  // namespace
 
 // Exported, and of the very shape that the driver calls it by.
-#define PMD_CALL(name, shape) \
+#define PMD_CALL(name, shape)                                   \
   extern "C" __attribute__((visibility("default"))) shape name; \
   int name
 
@@ -73,9 +74,8 @@ PMD_CALL(pmdSetIntegrationTime, PmdSetIntegrationTime)
 
 PMD_CALL(pmdGetValidModulationFrequency, PmdGetValidModulationFrequency)
 (PmdHandle handle, unsigned int* valid_hz, unsigned int, PmdProximity which, unsigned int frequency_hz) {
-  return Clients().Do(handle, [=](PmdClient& client) {
-    *valid_hz = Valid(client.hello().frequencies_hz, which, frequency_hz);
-  });
+  return Clients().Do(
+      handle, [=](PmdClient& client) { *valid_hz = Valid(client.hello().frequencies_hz, which, frequency_hz); });
 }
 
 PMD_CALL(pmdSetModulationFrequency, PmdSetModulationFrequency)
@@ -121,8 +121,8 @@ PMD_CALL(pmdGet3DCoordinates, PmdGet3DCoordinates)(PmdHandle handle, float* xyz_
     const WireFrame& frame = client.frame();
     std::vector<float> image;
     for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
-      const Eigen::Vector3d ray = client.hello().camera.Ray(static_cast<double>(i % frame.columns),
-                                                            static_cast<double>(i / frame.columns));
+      const Eigen::Vector3d ray =
+          client.hello().camera.Ray(static_cast<double>(i % frame.columns), static_cast<double>(i / frame.columns));
       for (const double share : ray) image.push_back(static_cast<float>(share * frame.range_m[i]));
     }
     CopyOut(image.data(), image.size() * sizeof(float), xyz_m, bytes);
@@ -145,8 +145,12 @@ PMD_CALL(pmdGetSourceDataDescription, PmdGetSourceDataDescription)(PmdHandle han
   });
 }
 
-PMD_CALL(pmdGetSourceDataSize, PmdGetSourceDataSize)(PmdHandle handle, std::size_t*) { return NotHere(handle, "raw data"); }
-PMD_CALL(pmdGetSourceData, PmdGetSourceData)(PmdHandle handle, void*, std::size_t) { return NotHere(handle, "raw data"); }
+PMD_CALL(pmdGetSourceDataSize, PmdGetSourceDataSize)(PmdHandle handle, std::size_t*) {
+  return NotHere(handle, "raw data");
+}
+PMD_CALL(pmdGetSourceData, PmdGetSourceData)(PmdHandle handle, void*, std::size_t) {
+  return NotHere(handle, "raw data");
+}
 PMD_CALL(pmdSourceCommand, PmdSourceCommand)(PmdHandle handle, char*, std::size_t, const char*) {
   return NotHere(handle, "source commands");
 }

@@ -1,6 +1,6 @@
-// The twin's stand-in for the ToF camera maker's library, generation 1 of the calls (robot/protocol/pmd_api.h): a library
-// of its own, for the two generations give the same names to calls of different shape. Its camera on the FireWire bus is
-// the DepthServer whose path the environment's MERLIN_PMD_SOCKET holds.
+// The twin's stand-in for the ToF camera maker's library, generation 1 of the calls (robot/protocol/pmd_api.h): a
+// library of its own, for the two generations give the same names to calls of different shape. Its camera on the
+// FireWire bus is the DepthServer whose path the environment's MERLIN_PMD_SOCKET holds.
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -41,7 +41,7 @@ int Give(PmdHandle handle, std::vector<double> Images::*which, double** image) {
 
 }  // namespace
 
-#define PMD_CALL(name, shape) \
+#define PMD_CALL(name, shape)                                   \
   extern "C" __attribute__((visibility("default"))) shape name; \
   int name
 

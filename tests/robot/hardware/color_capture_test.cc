@@ -101,8 +101,9 @@ TEST(ColorCapture, RefusesAStreamOfAnotherSize) {
     const ColorCapture camera(Config(server.url()), Info(), DefaultSettings(Info().sheet), clock);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              server.url() + ": the camera's picture does not fit the sheet small; expected 64 x 48 pixels, got 80 x 60");
+    EXPECT_EQ(
+        std::string(error.what()),
+        server.url() + ": the camera's picture does not fit the sheet small; expected 64 x 48 pixels, got 80 x 60");
   }
 }
 

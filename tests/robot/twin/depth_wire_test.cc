@@ -47,8 +47,9 @@ TEST(DepthWire, WritesTheBytesOfItsDescription) {
   EXPECT_EQ(Encode(WireRefused{"no"}), (Bytes{'M', 'P', 'M', 'D', 1, 0, 6, 0, 2, 0, 0, 0, 'n', 'o'}));
   // Range 1 = 0x3f800000, 2 = 0x40000000, amplitude 0.5 = 0x3f000000.
   EXPECT_EQ(Encode(SmallFrame()),
-            (Bytes{'M', 'P', 'M', 'D', 1, 0, 3, 0, 44, 0, 0, 0, 2, 0, 1, 0, 8, 7, 6, 5, 4, 3, 2, 1, 0xe8, 3, 0, 0, 0,
-                   0x2d, 0x31, 1, 0, 0, 0, 0, 0, 0, 0x80, 0x3f, 0, 0, 0, 0x40, 0, 0, 0, 0x3f, 0, 0, 0, 0, 7, 255, 0, 17}));
+            (Bytes{'M',  'P',  'M', 'D', 1, 0,    3, 0, 44, 0,    0,    0,    2, 0, 1, 0,   8, 7, 6,
+                   5,    4,    3,   2,   1, 0xe8, 3, 0, 0,  0,    0x2d, 0x31, 1, 0, 0, 0,   0, 0, 0,
+                   0x80, 0x3f, 0,   0,   0, 0x40, 0, 0, 0,  0x3f, 0,    0,    0, 0, 7, 255, 0, 17}));
 }
 
 TEST(DepthWire, ReadsBackWhatItWrote) {
@@ -78,7 +79,8 @@ TEST(DepthWire, KeepsTheBitsOfEveryRange) {
 TEST(DepthWire, WaitsForTheRestOfAMessage) {
   const Bytes whole = Encode(SmallFrame());
   for (std::size_t size = 0; size < whole.size(); ++size)
-    EXPECT_EQ(KindOf(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))), WireReading::Kind::kPartial);
+    EXPECT_EQ(KindOf(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))),
+              WireReading::Kind::kPartial);
   EXPECT_EQ(Decode(Concatenated(whole, {1, 2, 3})).bytes, whole.size());
 }
 
@@ -89,13 +91,13 @@ TEST(DepthWire, CallsGarbageWhatIsNoneOfItsMessages) {
     return KindOf(bytes);
   };
   EXPECT_EQ(with(0, 'X'), WireReading::Kind::kGarbage);
-  EXPECT_EQ(with(4, 2), WireReading::Kind::kGarbage);     // another version
-  EXPECT_EQ(with(6, 0), WireReading::Kind::kGarbage);     // no such kind
+  EXPECT_EQ(with(4, 2), WireReading::Kind::kGarbage);  // another version
+  EXPECT_EQ(with(6, 0), WireReading::Kind::kGarbage);  // no such kind
   EXPECT_EQ(with(6, 7), WireReading::Kind::kGarbage);
-  EXPECT_EQ(with(11, 0xff), WireReading::Kind::kGarbage); // longer than anything
-  EXPECT_EQ(with(12, 1), WireReading::Kind::kGarbage);    // a size that the images do not have
-  EXPECT_EQ(with(14, 0), WireReading::Kind::kGarbage);    // no rows
-  EXPECT_EQ(KindOf({'G'}), WireReading::Kind::kGarbage);  // at the first byte
+  EXPECT_EQ(with(11, 0xff), WireReading::Kind::kGarbage);  // longer than anything
+  EXPECT_EQ(with(12, 1), WireReading::Kind::kGarbage);     // a size that the images do not have
+  EXPECT_EQ(with(14, 0), WireReading::Kind::kGarbage);     // no rows
+  EXPECT_EQ(KindOf({'G'}), WireReading::Kind::kGarbage);   // at the first byte
   WireHello hello = SmallHello();
   hello.camera.fx_px = std::nan("");
   EXPECT_EQ(KindOf(Encode(hello)), WireReading::Kind::kGarbage);
@@ -112,8 +114,12 @@ TEST(DepthWire, CutsLongTexts) {
 
 TEST(DepthWire, SurvivesAMillionRandomAndMutatedInputs) {
   std::mt19937 random(1);  // its sequence is fixed by the standard
-  const std::vector<Bytes> seeds{Encode(SmallFrame()),         Encode(SmallHello()), Encode(WireUpdate{}),
-                                 Encode(WireSet{{1, 2, 3}}),   Encode(WireDone{}),   Encode(WireRefused{"no"}),
+  const std::vector<Bytes> seeds{Encode(SmallFrame()),
+                                 Encode(SmallHello()),
+                                 Encode(WireUpdate{}),
+                                 Encode(WireSet{{1, 2, 3}}),
+                                 Encode(WireDone{}),
+                                 Encode(WireRefused{"no"}),
                                  Concatenated(Encode(WireDone{}), Encode(SmallFrame()))};
   Bytes input;
   for (int i = 0; i < 1000000; ++i) {
