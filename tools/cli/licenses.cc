@@ -13,6 +13,8 @@
 #if MERLIN_TWIN
 #include <embree3/rtcore.h>
 #include <mujoco/mujoco.h>
+
+#include <boost/version.hpp>
 #endif
 
 namespace merlin::cli {
@@ -26,6 +28,8 @@ std::vector<LinkedWork> TwinWorks() {
       {"MuJoCo", mj_versionString(), "Apache-2.0",
        "shared library; its own parts: licenses/LICENSES_THIRD_PARTY.md beside it"},
       {"Embree", RTC_VERSION_STRING, "Apache-2.0", "shared library"},
+      {"Boost (Beast, Asio)", Dotted(BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100),
+       "BSL-1.0", "headers"},
       {"oneTBB", "", "Apache-2.0", "shared library, through Embree"},
       {"libglvnd (EGL)", "", "MIT AND BSD-1-Clause AND Apache-2.0", "loaded at run time"},
       {"Mesa (EGL, OSMesa)", "", "MIT", "loaded at run time"},
@@ -42,7 +46,9 @@ std::vector<LinkedWork> LinkedWorks() {
   std::vector<LinkedWork> works = TwinWorks();
   const std::vector<LinkedWork> always{
       {"Eigen", Dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION), "MPL-2.0", "headers"},
-      {"OpenCV (core, imgproc, imgcodecs)", CV_VERSION, "Apache-2.0", "shared libraries"},
+      {"OpenCV (core, imgproc, imgcodecs, videoio)", CV_VERSION, "Apache-2.0", "shared libraries"},
+      {"FFmpeg", "", "GPL-2.0-or-later", "shared libraries, through OpenCV's videoio; as Debian builds it"},
+      {"GStreamer", "", "LGPL-2.1-or-later", "shared libraries, through OpenCV's videoio"},
       {"urdfdom", "", "BSD-3-Clause", "shared library and headers"},
       {"TinyXML", Dotted(TIXML_MAJOR_VERSION, TIXML_MINOR_VERSION, TIXML_PATCH_VERSION), "Zlib",
        "shared library, through urdfdom"},

@@ -1,0 +1,35 @@
+// A shared library opened at run time, and its calls by name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace merlin {
+
+class SharedLibrary {
+ public:
+  // Throws InputError for a file that is not there or is no library.
+  explicit SharedLibrary(const std::string& path);
+  ~SharedLibrary();
+  SharedLibrary(const SharedLibrary&) = delete;
+  SharedLibrary& operator=(const SharedLibrary&) = delete;
+
+  // A call it lacks is noted, and null; RequireAll then names them all.
+  template <class Function>
+  void Find(const char* name, Function*& call) {
+    call = reinterpret_cast<Function*>(Symbol(name));
+  }
+  // Throws InputError naming every call that Find did not find.
+  void RequireAll() const;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  void* Symbol(const char* name);
+
+  std::string path_;
+  void* library_;
+  std::vector<std::string> missing_;
+};
+
+}  // namespace merlin
