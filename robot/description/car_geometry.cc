@@ -5,85 +5,225 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <optional>
+#include <set>
+#include <vector>
 
 #include "robot/types/error.h"
+#include "robot/types/nearest_name.h"
 
 namespace merlin {
 namespace {
 
-constexpr std::array kWheels = {"front_left_wheel", "front_right_wheel", "rear_left_wheel", "rear_right_wheel"};
-constexpr std::array kSteeredLinks = {"steering_servo", "front_left_knuckle", "front_right_knuckle"};
-constexpr double kSameLength_m = 1e-6;  // lengths in the file closer than this are the same
+constexpr double kSameLength_m = 5e-4;       // lengths that differ by less are the same: files round
+constexpr double kParallel = 0.99;           // cosine of two directions that are the same
+constexpr double kTrailMax = 0.02;           // of the wheelbase: a wheel's middle before or behind its steering axis
+constexpr std::array kSides = {+1.0, -1.0};  // left, right
 
-// The car's links with their poses in the base frame, joints at 0.
+std::string Text(const Eigen::Vector3d& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", p.x(), p.y(), p.z()); }
+
+// The links by name, with their poses in the root's frame at joint angles 0.
 class Tree {
  public:
-  Tree(const UrdfSource& source, const std::vector<CarLink>& links) : source_(source) {
+  Tree(const UrdfSource& source, std::vector<CarLink>& links) : source_(source), links_(links) {
     for (const CarLink& link : links) {
-      const Pose T_base_parent = link.parent.empty() ? Pose::Identity() : nodes_.at(link.parent).T_base_link;
-      nodes_.emplace(link.name, Node{&link, T_base_parent * link.T_parent_link});
+      parents_.push_back(link.parent.empty() ? 0 : FindLink(link.parent));
+      T_root_link_.push_back(link.parent.empty() ? Pose::Identity()
+                                                 : T_root_link_[parents_.back()] * link.T_parent_link);
     }
   }
-  const CarLink& Link(const std::string& name) const { return *Find(name).link; }
-  Pose T_base(const std::string& name) const { return Find(name).T_base_link; }
+  CarLink& Link(std::size_t index) { return links_[index]; }
+  const Pose& T_root(std::size_t index) const { return T_root_link_[index]; }
+  Eigen::Vector3d AxisInRoot(std::size_t index) const { return T_root_link_[index].linear() * links_[index].axis; }
+  bool IsBelow(std::size_t index, std::size_t ancestor) const {
+    while (index != ancestor && index != 0) index = parents_[index];
+    return index == ancestor;
+  }
+  std::size_t LinkOf(const RoleName& frame) const {
+    return Find(frame, "link", [](const CarLink& link) { return link.name; });
+  }
+  std::size_t LinkBehind(const RoleName& joint) const {
+    return Find(joint, "joint", [](const CarLink& link) { return link.joint_name; });
+  }
 
  private:
-  struct Node {
-    const CarLink* link;
-    Pose T_base_link;
-  };
-  const Node& Find(const std::string& name) const {
-    const auto node = nodes_.find(name);
-    if (node == nodes_.end()) throw InputError(source_.path.string(), fmt::format("the car needs a link '{}'", name));
-    return node->second;
+  std::size_t FindLink(const std::string& name) const {
+    return static_cast<std::size_t>(std::ranges::find(links_, name, &CarLink::name) - links_.begin());
   }
+  template <class NameOf>
+  std::size_t Find(const RoleName& role, const std::string& kind, NameOf name_of) const {
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      known.push_back(name_of(links_[i]));
+      if (!known.back().empty() && known.back() == role.name) return i;
+    }
+    std::erase(known, "");
+    const std::string nearest = NearestName(role.name, known);
+    const std::string hint = nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
+    if (!role.where.empty())
+      throw InputError(role.where, fmt::format("'{}' names {} '{}', which is not in {}{}", role.role, kind, role.name,
+                                               source_.path.filename().string(), hint));
+    throw InputError(source_.path.string(), fmt::format("the car needs a {} '{}'{}", kind, role.name, hint));
+  }
+
   const UrdfSource& source_;
-  std::map<std::string, Node> nodes_;
+  std::vector<CarLink>& links_;
+  std::vector<std::size_t> parents_;
+  std::vector<Pose> T_root_link_;
 };
 
-double WheelRadius(const UrdfSource& source, const CarLink& wheel) {
-  if (wheel.joint != CarLink::Joint::kContinuous)
-    throw InputError(source.Where(wheel.joint_name), fmt::format("'{}' must turn", wheel.name), "a continuous joint");
-  if (wheel.collision.size() != 1 || wheel.collision[0].kind != CarShape::Kind::kCylinder)
-    throw InputError(source.Where(wheel.name), fmt::format("'{}': the tyre", wheel.name), "one collision cylinder");
-  if (!(wheel.mass_kg > 0.0)) throw InputError(source.Where(wheel.name), fmt::format("'{}' needs a mass", wheel.name));
-  return wheel.collision[0].size_m.x();
+// One role for each joint, and each joint able to play it.
+void FindRoles(const UrdfSource& source, const CarMapping& mapping, Tree& tree, CarDescription& car) {
+  std::set<std::string> taken;
+  const auto find = [&](const RoleName& role, CarLink::Joint kind, const char* must, const char* expected) {
+    const std::size_t index = tree.LinkBehind(role);
+    const CarLink& link = tree.Link(index);
+    if (!taken.insert(role.name).second)
+      throw InputError(role.where, fmt::format("'{}': joint '{}' already has another role", role.role, role.name));
+    if (link.joint != kind)
+      throw InputError(source.Where(role.name), fmt::format("joint '{}' must {}", role.name, must), expected);
+    if (!(link.mass_kg > 0.0))
+      throw InputError(source.Where(link.name), fmt::format("link '{}' moves: it needs a mass", link.name));
+    return index;
+  };
+  for (std::size_t i = 0; i < 4; ++i)
+    car.wheels[i].link =
+        find(mapping.wheel_joints[i], CarLink::Joint::kContinuous, "turn endlessly", "type continuous");
+  for (std::size_t i = 0; i < 2; ++i) {
+    car.knuckles[i] = find(mapping.steer_joints[i], CarLink::Joint::kRevolute, "steer", "type revolute, with limits");
+    if (!tree.IsBelow(car.wheels[i].link, car.knuckles[i]))
+      throw InputError(source.Where(mapping.wheel_joints[i].name),
+                       fmt::format("joint '{}' does not hang on what steers it", mapping.wheel_joints[i].name),
+                       fmt::format("a link below joint '{}'", mapping.steer_joints[i].name));
+  }
 }
 
-// Wheelbase, track, radius and the largest steering angle; the four wheels must agree on them.
-void DeriveWheels(const UrdfSource& source, const Tree& tree, CarDescription& car) {
-  const Eigen::Vector3d front_left = tree.T_base(kWheels[0]).translation();
-  const Eigen::Vector3d rear_left = tree.T_base(kWheels[2]).translation();
-  car.wheel_radius_m = WheelRadius(source, tree.Link(kWheels[0]));
-  car.wheelbase_m = front_left.x() - rear_left.x();
-  car.track_m = 2.0 * front_left.y();
-  if (!(car.wheelbase_m > 0.0 && car.track_m > 0.0))
-    throw InputError(source.Where(kWheels[0]), "wheelbase and track", "positive lengths",
-                     fmt::format("{} m and {} m", car.wheelbase_m, car.track_m));
-  for (const std::string wheel : kWheels) {
-    const Eigen::Vector3d expected(wheel.starts_with("front") ? car.wheelbase_m : 0.0,
-                                   (wheel.find("left") != std::string::npos ? 0.5 : -0.5) * car.track_m,
-                                   car.wheel_radius_m);
-    const Eigen::Vector3d centre = tree.T_base(wheel).translation();
-    if ((centre - expected).norm() > kSameLength_m)
-      throw InputError(source.Where(wheel),
-                       fmt::format("'{}': base_link lies on the ground below the rear axle's middle", wheel),
-                       fmt::format("its centre at ({}, {}, {}) m", expected.x(), expected.y(), expected.z()),
-                       fmt::format("({}, {}, {}) m", centre.x(), centre.y(), centre.z()));
-    if (std::abs(WheelRadius(source, tree.Link(wheel)) - car.wheel_radius_m) > kSameLength_m)
-      throw InputError(source.Where(wheel), fmt::format("'{}': radius", wheel),
-                       fmt::format("{} m as the others", car.wheel_radius_m));
+double FindTyre(const UrdfSource& source, const CarLink& link, CarWheel& wheel) {
+  if (link.collision.size() != 1 || link.collision[0].kind != CarShape::Kind::kCylinder)
+    throw InputError(source.Where(link.name), fmt::format("'{}': the tyre", link.name), "one collision cylinder");
+  wheel.T_link_tyre = link.collision[0].T_link_shape;
+  wheel.width_m = link.collision[0].size_m.y();
+  return link.collision[0].size_m.x();
+}
+
+// The wheels' radius and their middles in the root's frame.
+std::array<Eigen::Vector3d, 4> DeriveTyres(const UrdfSource& source, Tree& tree, CarDescription& car) {
+  std::array<Eigen::Vector3d, 4> middles;
+  for (std::size_t i = 0; i < 4; ++i) {
+    CarWheel& wheel = car.wheels[i];
+    const CarLink& link = tree.Link(wheel.link);
+    const double radius_m = FindTyre(source, link, wheel);
+    if (i == 0) car.wheel_radius_m = radius_m;
+    if (!(std::abs(radius_m - car.wheel_radius_m) <= kSameLength_m))
+      throw InputError(source.Where(link.name), fmt::format("'{}': radius of the tyre", link.name),
+                       fmt::format("{} m as of '{}'", car.wheel_radius_m, tree.Link(car.wheels[0].link).name),
+                       fmt::format("{} m", radius_m));
+    const Eigen::Vector3d middle = wheel.T_link_tyre.translation();
+    if ((middle - link.axis * link.axis.dot(middle)).norm() > kSameLength_m ||
+        std::abs(wheel.T_link_tyre.linear().col(2).dot(link.axis)) < kParallel)
+      throw InputError(source.Where(link.name), fmt::format("'{}': the tyre", link.name),
+                       "one that is round about its joint's axis");
+    middles[i] = tree.T_root(wheel.link) * middle;
   }
-  for (const std::string link : kSteeredLinks)
-    if (tree.Link(link).joint != CarLink::Joint::kRevolute)
-      throw InputError(source.Where(tree.Link(link).joint_name), fmt::format("'{}' must steer", link),
-                       "a revolute joint");
-  car.steering_max_rad =
-      std::min(-tree.Link("steering_servo").joint_min_rad, tree.Link("steering_servo").joint_max_rad);
-  if (!(car.steering_max_rad > 0.0 && car.steering_max_rad < 1.5))
-    throw InputError(source.Where(tree.Link("steering_servo").joint_name), "steering limits",
-                     "both sides of 0, below 1.5 rad");
+  return middles;
+}
+
+// From the rear axle and the way to the front one. A base within rounding of the root is the root.
+Pose BaseInRoot(const UrdfSource& source, const std::array<Eigen::Vector3d, 4>& middles, double radius_m) {
+  const Eigen::Vector3d rear = 0.5 * (middles[2] + middles[3]), front = 0.5 * (middles[0] + middles[1]);
+  const Eigen::Vector3d axle = middles[2] - middles[3];
+  const Eigen::Vector3d left = axle.normalized();
+  const Eigen::Vector3d way = front - rear - left * left.dot(front - rear);
+  if (!(axle.norm() > kSameLength_m && way.norm() > kSameLength_m))
+    throw InputError(source.path.string(), "the wheels stand in one another", "two axles, one before the other");
+  const Eigen::Vector3d ahead = way.normalized();
+  Pose T_root_base = Pose::Identity();
+  T_root_base.linear() << ahead, left, ahead.cross(left);
+  T_root_base.translation() = rear - radius_m * T_root_base.linear().col(2);
+  if (!(T_root_base.linear()(2, 2) > kParallel))
+    throw InputError(source.path.string(), "the wheels do not stand as their roles say",
+                     "the root's z up, left wheels on the left, front wheels in front");
+  return T_root_base.isApprox(Pose::Identity(), 1e-6) ? Pose::Identity() : T_root_base;
+}
+
+void PutBaseAboveRoot(const Pose& T_base_root, CarDescription& car) {
+  CarLink base;
+  base.name = "base_link";
+  while (std::ranges::find(car.links, base.name, &CarLink::name) != car.links.end()) base.name += "_";
+  car.links[0].parent = base.name;
+  car.links[0].joint_name = base.name + "_joint";
+  car.links[0].T_parent_link = T_base_root;
+  car.links.insert(car.links.begin(), base);
+  for (CarWheel& wheel : car.wheels) ++wheel.link;
+  for (std::size_t& knuckle : car.knuckles) ++knuckle;
+}
+
+// Wheels as on a car: two axles, each symmetric about the base's x axis, all on the ground.
+void DeriveWheels(const UrdfSource& source, Tree& tree, const std::array<Eigen::Vector3d, 4>& middles_root,
+                  const Pose& T_base_root, CarDescription& car) {
+  std::array<Eigen::Vector3d, 4> middles;
+  for (std::size_t i = 0; i < 4; ++i) middles[i] = T_base_root * middles_root[i];
+  const double front_track_m = middles[0].y() - middles[1].y(), rear_track_m = middles[2].y() - middles[3].y();
+  car.wheelbase_m = 0.5 * (middles[0].x() + middles[1].x());
+  car.track_m = 0.5 * (front_track_m + rear_track_m);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CarLink& link = tree.Link(car.wheels[i].link);
+    const Eigen::Vector3d expected(i < 2 ? car.wheelbase_m : 0.0,
+                                   0.5 * kSides[i % 2] * (i < 2 ? front_track_m : rear_track_m), car.wheel_radius_m);
+    if (!((middles[i] - expected).norm() <= kSameLength_m))
+      throw InputError(source.Where(link.name), fmt::format("'{}': the wheels are not two axles of one car", link.name),
+                       "its middle at " + Text(expected) + " from the ground below the rear axle's middle",
+                       Text(middles[i]));
+    const double along = (T_base_root.linear() * tree.AxisInRoot(car.wheels[i].link)).y();
+    if (std::abs(along) < kParallel)
+      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': axis", link.joint_name),
+                       "the axle's direction");
+    if (along < 0.0) link.axis = -link.axis;
+  }
+}
+
+// Ackermann's law, the other way: the middle angle at which the wheel of that side stands at its own.
+double MiddleAngle_rad(const CarDescription& car, double wheel_rad, double side) {
+  const double tangent = std::tan(wheel_rad);
+  return std::atan2(tangent, 1.0 + 0.5 * side * car.steering_track_m / car.wheelbase_m * tangent);
+}
+
+void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_root, CarDescription& car) {
+  std::array<Eigen::Vector3d, 2> pivots;
+  for (std::size_t i = 0; i < 2; ++i) {
+    CarLink& link = tree.Link(car.knuckles[i]);
+    const Eigen::Vector3d axis = T_base_root.linear() * tree.AxisInRoot(car.knuckles[i]);
+    if (std::abs(axis.z()) < kParallel)
+      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': axis", link.joint_name),
+                       "an upright one");
+    if (axis.z() < 0.0) {
+      link.axis = -link.axis;
+      std::swap(link.joint_min_rad, link.joint_max_rad);
+      link.joint_min_rad = -link.joint_min_rad, link.joint_max_rad = -link.joint_max_rad;
+    }
+    const Eigen::Vector3d joint = T_base_root * tree.T_root(car.knuckles[i]).translation();
+    pivots[i] = joint + axis * (car.wheel_radius_m - joint.z()) / axis.z();
+    if (!(std::abs(pivots[i].x() - car.wheelbase_m) <= kTrailMax * car.wheelbase_m))
+      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': its axis", link.joint_name),
+                       fmt::format("at x {:.6g} m as the wheel's middle", car.wheelbase_m),
+                       fmt::format("{:.6g} m", pivots[i].x()));
+  }
+  car.steering_track_m = pivots[0].y() - pivots[1].y();
+  if (!(car.steering_track_m > 0.0 && std::abs(pivots[0].y() + pivots[1].y()) <= 2.0 * kSameLength_m))
+    throw InputError(source.Where(tree.Link(car.knuckles[0]).joint_name), "the two steering axes",
+                     "one on each side, equally far out",
+                     fmt::format("y {:.6g} m and {:.6g} m", pivots[0].y(), pivots[1].y()));
+  car.steering_max_rad = HUGE_VAL;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const CarLink& link = tree.Link(car.knuckles[i]);
+    if (!(link.joint_min_rad < 0.0 && link.joint_max_rad > 0.0 &&
+          std::max(-link.joint_min_rad, link.joint_max_rad) < 1.5))
+      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': steering limits", link.joint_name),
+                       "both sides of 0, below 1.5 rad",
+                       fmt::format("{} and {} rad", link.joint_min_rad, link.joint_max_rad));
+    for (const double limit_rad : {link.joint_min_rad, link.joint_max_rad})
+      car.steering_max_rad = std::min(car.steering_max_rad, std::abs(MiddleAngle_rad(car, limit_rad, kSides[i])));
+  }
 }
 
 }  // namespace
@@ -119,12 +259,17 @@ Drivetrain ReadDrivetrain(const UrdfSource& source) {
   return d;
 }
 
-void DeriveGeometry(const UrdfSource& source, CarDescription& car) {
-  const Tree tree(source, car.links);
-  DeriveWheels(source, tree, car);
-  car.T_base_depth = tree.T_base("depth_camera_optical_frame");
-  car.T_base_color = tree.T_base("color_camera_optical_frame");
-  car.T_base_compass = tree.T_base("compass_frame");
+void DeriveGeometry(const UrdfSource& source, const CarMapping& mapping, CarDescription& car) {
+  Tree tree(source, car.links);
+  FindRoles(source, mapping, tree, car);
+  const auto middles = DeriveTyres(source, tree, car);
+  const Pose T_base_root = BaseInRoot(source, middles, car.wheel_radius_m).inverse();
+  DeriveWheels(source, tree, middles, T_base_root, car);
+  DeriveSteering(source, tree, T_base_root, car);
+  car.T_base_depth = T_base_root * tree.T_root(tree.LinkOf(mapping.depth_camera));
+  car.T_base_color = T_base_root * tree.T_root(tree.LinkOf(mapping.color_camera));
+  car.T_base_compass = T_base_root * tree.T_root(tree.LinkOf(mapping.compass));
+  if (!T_base_root.matrix().isIdentity(0.0)) PutBaseAboveRoot(T_base_root, car);
 }
 
 }  // namespace merlin

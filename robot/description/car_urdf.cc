@@ -103,9 +103,12 @@ void ReadJoint(const UrdfSource& source, const urdf::Joint& joint, CarLink& link
     case urdf::Joint::CONTINUOUS:
       link.joint = CarLink::Joint::kContinuous;
       break;
+    case urdf::Joint::PRISMATIC:
+      link.joint = CarLink::Joint::kPrismatic;
+      break;
     default:
       throw InputError(source.Where(joint.name), fmt::format("joint '{}': type", joint.name),
-                       "fixed, revolute or continuous");
+                       "fixed, revolute, continuous or prismatic: the car is one piece");
   }
   link.axis = {joint.axis.x, joint.axis.y, joint.axis.z};
   if (!(link.axis.norm() > 0.0))
@@ -147,12 +150,10 @@ void AppendTree(const UrdfSource& source, const urdf::Link& link, std::vector<Ca
 CarDescription ReadCar(const std::filesystem::path& urdf) {
   const UrdfSource source = ReadUrdf(urdf);
   const urdf::ModelInterfaceSharedPtr model = ParseUrdf(source);
-  if (model->getRoot()->name != "base_link")
-    throw InputError(source.Where(model->getRoot()->name), "the root link", "base_link", model->getRoot()->name);
   CarDescription car;
   car.name = model->getName();
   AppendTree(source, *model->getRoot(), car.links);
-  DeriveGeometry(source, car);
+  DeriveGeometry(source, NamingRule(), car);
   car.drivetrain = ReadDrivetrain(source);
   return car;
 }

@@ -131,15 +131,15 @@ TEST_F(Description, ParentsComeBeforeChildren) {
     EXPECT_TRUE(link.parent.empty() || seen.contains(link.parent)) << link.name;
     seen.insert(link.name);
   }
-  EXPECT_EQ(Link(car, "front_left_wheel").parent, "front_left_knuckle");
-  EXPECT_EQ(Link(car, "front_left_wheel").joint, CarLink::Joint::kContinuous);
-  EXPECT_EQ(Link(car, "front_left_knuckle").joint, CarLink::Joint::kRevolute);
+  EXPECT_EQ(Link(car, "wheel_front_left").parent, "knuckle_front_left");
+  EXPECT_EQ(Link(car, "wheel_front_left").joint, CarLink::Joint::kContinuous);
+  EXPECT_EQ(Link(car, "knuckle_front_left").joint, CarLink::Joint::kRevolute);
   EXPECT_EQ(Link(car, "pc").joint, CarLink::Joint::kFixed);
 }
 
 TEST_F(Description, ShapesHaveSizeColourAndMaterial) {
   const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
-  const CarLink& wheel = Link(car, "rear_right_wheel");
+  const CarLink& wheel = Link(car, "wheel_rear_right");
   ASSERT_EQ(wheel.collision.size(), 1u);
   EXPECT_EQ(wheel.collision[0].kind, CarShape::Kind::kCylinder);
   EXPECT_EQ(wheel.collision[0].size_m, Eigen::Vector3d(0.055, 0.04, 0.0));
@@ -208,12 +208,11 @@ TEST_F(Description, NamesTheLineOfBrokenXml) {
 }
 
 TEST_F(Description, RefusesACarWithoutWhatItNeeds) {
-  ExpectSays(CarError("<robot name=\"x\"><link name=\"body\"/></robot>"), {"car.urdf:1", "base_link", "body"});
-  ExpectSays(CarError("<robot name=\"x\"><link name=\"base_link\"/></robot>"), {"front_left_wheel"});
+  ExpectSays(CarError("<robot name=\"x\"><link name=\"base_link\"/></robot>"),
+             {"car.urdf", "needs a joint", "wheel_front_left_joint"});
   for (const std::string frame : {"depth_camera_optical_frame", "color_camera_optical_frame", "compass_frame"}) {
     std::string renamed = merlin_;
-    for (std::size_t at; (at = renamed.find("\"" + frame + "\"")) != std::string::npos;)
-      renamed.replace(at + 1, 1, "X");
+    for (std::size_t at; (at = renamed.find("\"" + frame + "\"")) != std::string::npos;) renamed[at + 1] = 'X';
     ExpectSays(CarError(renamed), {"needs a link", frame});
   }
   ExpectSays(CarError(Replaced(merlin_, "<drivetrain", "<powertrain")), {"<drivetrain"});
@@ -226,7 +225,7 @@ TEST_F(Description, NamesTheLineOfAWrongNumber) {
     const std::string text = Replaced(merlin_, from, to);
     ExpectSays(CarError(text), {"car.urdf:" + std::to_string(LineOf(text, element)) + ":", what});
   };
-  const std::string chassis = "<link name=\"chassis\">", wheel = "<link name=\"front_left_wheel\">";
+  const std::string chassis = "<link name=\"chassis\">", wheel = "<link name=\"wheel_front_left\">";
   for (const std::string mass : {"0", "-1", "nan", "inf"})
     expect("<mass value=\"1.68\"/>", "<mass value=\"" + mass + "\"/>", chassis, "mass");
   expect("ixx=\"0.005404\"", "ixx=\"0\"", chassis, "inertia");
@@ -236,16 +235,49 @@ TEST_F(Description, NamesTheLineOfAWrongNumber) {
   expect("gear=\"10\"", "gear=\"0\"", "<drivetrain", "'gear'");
   expect("gear=\"10\"", "gear=\"ten\"", "<drivetrain", "'gear'");
   expect("turn=\"512\"", "turn=\"511.5\"", "<drivetrain", "whole number");
-  expect("<joint name=\"rear_left_wheel_joint\" type=\"continuous\">",
-         "<joint name=\"rear_left_wheel_joint\" type=\"floating\">", "<joint name=\"rear_left_wheel_joint\"", "type");
-  expect("<joint name=\"rear_left_wheel_joint\" type=\"continuous\">",
-         "<joint name=\"rear_left_wheel_joint\" type=\"fixed\">", "<joint name=\"rear_left_wheel_joint\"", "turn");
+  expect("<joint name=\"wheel_rear_left_joint\" type=\"continuous\">",
+         "<joint name=\"wheel_rear_left_joint\" type=\"floating\">", "<joint name=\"wheel_rear_left_joint\"", "type");
+  expect("<joint name=\"wheel_rear_left_joint\" type=\"continuous\">",
+         "<joint name=\"wheel_rear_left_joint\" type=\"fixed\">", "<joint name=\"wheel_rear_left_joint\"", "turn");
 }
 
-TEST_F(Description, RefusesWheelsThatDisagree) {
-  ExpectSays(CarError(Replaced(merlin_, "xyz=\"0 -0.13 0.055\"", "xyz=\"0 -0.14 0.055\"")),
-             {"rear_right_wheel", "centre"});
-  ExpectSays(CarError(Replaced(merlin_, "xyz=\"0 0.13 0.055\"", "xyz=\"0.1 0.13 0.055\"")), {"rear", "base_link"});
+TEST_F(Description, RefusesWheelsThatMakeNoCar) {
+  const auto expect = [this](const std::string& from, const std::string& to, const std::vector<std::string>& says) {
+    ExpectSays(CarError(Replaced(merlin_, from, to)), says);
+  };
+  const std::string rear_left = "xyz=\"0 0.13 0.055\"", rear_right = "xyz=\"0 -0.13 0.055\"";
+  expect(rear_right, "xyz=\"0 -0.14 0.055\"", {"car.urdf:", "two axles of one car"});  // one farther out
+  expect(rear_left, "xyz=\"0.1 0.13 0.055\"", {"two axles of one car"});               // one farther ahead
+  expect(rear_left, "xyz=\"0 0.13 0.065\"", {"two axles of one car"});                 // one farther up
+  expect(rear_left, "xyz=\"0 -0.13 0.055\"", {"stand in one another"});
+  expect(rear_left, "xyz=\"nan 0.13 0.055\"", {"car.urdf"});
+  expect("<cylinder radius=\"0.055\" length=\"0.04\"/></geometry>\n    </collision>",
+         "<cylinder radius=\"0.05\" length=\"0.04\"/></geometry>\n    </collision>",
+         {"car.urdf:", "wheel_front_right", "radius", "0.05 m"});
+}
+
+// Left and right exchanged in the roles would turn the car over; so would front and rear.
+TEST_F(Description, RefusesWheelsOnTheWrongSide) {
+  std::string text = merlin_;
+  text = Replaced(text, "<child link=\"wheel_rear_left\"/><origin xyz=\"0 0.13",
+                  "<child link=\"wheel_rear_left\"/><origin xyz=\"0 -0.13");
+  text = Replaced(text, "<child link=\"wheel_rear_right\"/><origin xyz=\"0 -0.13",
+                  "<child link=\"wheel_rear_right\"/><origin xyz=\"0 0.13");
+  ExpectSays(CarError(text), {"do not stand as their roles say"});
+}
+
+TEST_F(Description, ReadsTheMiddleAngleFromTheKnucklesLimits) {
+  // Another limit of one knuckle: the inner angle of 20 deg, or the outer one on its other side, binds the whole car.
+  const double inner_rad = std::atan(1.0 / (1.0 / std::tan(20.0 * std::numbers::pi / 180.0) - 0.13 / 0.33));
+  const double outer_rad = std::atan(1.0 / (1.0 / std::tan(20.0 * std::numbers::pi / 180.0) + 0.13 / 0.33));
+  const std::string left = "lower=\"-0.5190064495436374\" upper=\"0.5190064495436374\"";
+  for (const std::string& limits :
+       std::vector<std::string>{"lower=\"-0.5190064495436374\" upper=\"" + std::to_string(inner_rad) + "\"",
+                                "lower=\"" + std::to_string(-outer_rad) + "\" upper=\"0.5190064495436374\""}) {
+    const CarDescription car = ReadCar(File("car.urdf", Replaced(merlin_, left, limits)));
+    EXPECT_NEAR(car.steering_max_rad, 20.0 * std::numbers::pi / 180.0, 1e-6) << limits;
+  }
+  ExpectSays(CarError(Replaced(merlin_, left, "lower=\"0\" upper=\"0.5\"")), {"car.urdf:", "steering limits"});
 }
 
 TEST_F(Description, RefusesWhatUrdfdomRefusesAndSaysWhy) {
