@@ -53,10 +53,15 @@ void SetMaterial(mjSpec* spec, const CarShape& shape, const mjsDefault* plain, m
 }
 
 void SetMesh(mjSpec* spec, const CarShape& shape, const std::string& name, const mjsDefault* plain, mjsGeom* geom) {
+  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float) && sizeof(Eigen::Vector3i) == 3 * sizeof(int));
   mjsMesh* mesh = mjs_addMesh(spec, plain);
   SetName(mesh->element, name);
-  mjs_setString(mesh->file, shape.mesh.c_str());
+  const std::vector<Eigen::Vector3f>& vertices = shape.mesh->vertices;
+  const std::vector<Eigen::Vector3i>& triangles = shape.mesh->triangles;
+  mjs_setFloat(mesh->uservert, vertices.data()->data(), static_cast<int>(3 * vertices.size()));
+  mjs_setInt(mesh->userface, triangles.data()->data(), static_cast<int>(3 * triangles.size()));
   Eigen::Vector3d::Map(mesh->scale) = shape.size_m;
+  mesh->inertia = mjMESH_INERTIA_SHELL;  // of no consequence; the others refuse a mesh that is open
   geom->type = mjGEOM_MESH;
   mjs_setString(geom->meshname, name.c_str());
 }

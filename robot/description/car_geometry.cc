@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "robot/description/drivetrain_numbers.h"
 #include "robot/types/error.h"
 #include "robot/types/nearest_name.h"
 
@@ -63,7 +64,9 @@ class Tree {
     if (!role.where.empty())
       throw InputError(role.where, fmt::format("'{}' names {} '{}', which is not in {}{}", role.role, kind, role.name,
                                                source_.path.filename().string(), hint));
-    throw InputError(source_.path.string(), fmt::format("the car needs a {} '{}'{}", kind, role.name, hint));
+    throw InputError(source_.path.string(),
+                     fmt::format("the car needs a {} '{}', or another that {} names for it{}", kind, role.name,
+                                 MappingFile(source_.path).filename().string(), hint));
   }
 
   const UrdfSource& source_;
@@ -98,31 +101,82 @@ void FindRoles(const UrdfSource& source, const CarMapping& mapping, Tree& tree, 
   }
 }
 
-double FindTyre(const UrdfSource& source, const CarLink& link, CarWheel& wheel) {
-  if (link.collision.size() != 1 || link.collision[0].kind != CarShape::Kind::kCylinder)
-    throw InputError(source.Where(link.name), fmt::format("'{}': the tyre", link.name), "one collision cylinder");
-  wheel.T_link_tyre = link.collision[0].T_link_shape;
-  wheel.width_m = link.collision[0].size_m.y();
-  return link.collision[0].size_m.x();
+// A wheel's tyre: where its middle is, and how large.
+struct Tyre {
+  Pose T_link_tyre = Pose::Identity();
+  double radius_m = 0.0, width_m = 0.0;
+};
+
+// The frame at a point whose z is the axle.
+Pose AtAxle(const Eigen::Vector3d& middle, const Eigen::Vector3d& axis) {
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+  pose.translation() = middle;
+  return pose;
+}
+
+// The size of a mesh about the axle: its farthest vertex, and its middle along the axle.
+Tyre MeshTyre(const CarShape& shape, const Eigen::Vector3d& axis) {
+  double radius_m = 0.0, nearest_m = HUGE_VAL, farthest_m = -HUGE_VAL;
+  for (const Eigen::Vector3f& vertex : shape.mesh->vertices) {
+    const Eigen::Vector3d point = shape.T_link_shape * shape.size_m.cwiseProduct(vertex.cast<double>());
+    const double along_m = axis.dot(point);
+    radius_m = std::max(radius_m, (point - along_m * axis).norm());
+    nearest_m = std::min(nearest_m, along_m), farthest_m = std::max(farthest_m, along_m);
+  }
+  return {AtAxle(0.5 * (nearest_m + farthest_m) * axis, axis), radius_m, farthest_m - nearest_m};
+}
+
+// What the largest round thing among the shapes says. A cylinder must lie along the axle; a ball is round about all,
+// and a mesh is taken for round.
+std::optional<Tyre> RoundTyre(const std::vector<CarShape>& shapes, const Eigen::Vector3d& axis) {
+  std::optional<Tyre> largest;
+  for (const CarShape& shape : shapes) {
+    Tyre tyre{shape.T_link_shape, shape.size_m.x(), shape.size_m.y()};
+    if (shape.kind == CarShape::Kind::kBox) continue;
+    if (shape.kind == CarShape::Kind::kCylinder && std::abs(shape.T_link_shape.linear().col(2).dot(axis)) < kParallel)
+      continue;
+    if (shape.kind == CarShape::Kind::kSphere)
+      tyre = {AtAxle(shape.T_link_shape.translation(), axis), shape.size_m.x(), 2.0 * shape.size_m.x()};
+    if (shape.kind == CarShape::Kind::kMesh) tyre = MeshTyre(shape, axis);
+    if (!largest || tyre.radius_m > largest->radius_m) largest = tyre;
+  }
+  return largest;
+}
+
+// By the shapes that touch, else by those that are seen; what the mapping says goes before both.
+Tyre FindTyre(const UrdfSource& source, const CarMapping& mapping, const CarLink& link) {
+  std::optional<Tyre> tyre = RoundTyre(link.collision, link.axis);
+  if (!tyre) tyre = RoundTyre(link.visual, link.axis);
+  if (!tyre && mapping.wheel_radius_m && mapping.wheel_width_m) tyre = {AtAxle({0, 0, 0}, link.axis), 0.0, 0.0};
+  if (!tyre)
+    throw InputError(
+        source.Where(link.name), fmt::format("'{}': how large the tyre is", link.name),
+        fmt::format("a cylinder about the axle, a sphere or a mesh, or wheel_radius_m and wheel_width_m in {}",
+                    MappingFile(source.path).filename().string()));
+  if (mapping.wheel_radius_m) tyre->radius_m = *mapping.wheel_radius_m;
+  if (mapping.wheel_width_m) tyre->width_m = *mapping.wheel_width_m;
+  return *tyre;
 }
 
 // The wheels' radius and their middles in the root's frame.
-std::array<Eigen::Vector3d, 4> DeriveTyres(const UrdfSource& source, Tree& tree, CarDescription& car) {
+std::array<Eigen::Vector3d, 4> DeriveTyres(const UrdfSource& source, const CarMapping& mapping, Tree& tree,
+                                           CarDescription& car) {
   std::array<Eigen::Vector3d, 4> middles;
   for (std::size_t i = 0; i < 4; ++i) {
     CarWheel& wheel = car.wheels[i];
     const CarLink& link = tree.Link(wheel.link);
-    const double radius_m = FindTyre(source, link, wheel);
-    if (i == 0) car.wheel_radius_m = radius_m;
-    if (!(std::abs(radius_m - car.wheel_radius_m) <= kSameLength_m))
+    const Tyre tyre = FindTyre(source, mapping, link);
+    wheel.T_link_tyre = tyre.T_link_tyre, wheel.width_m = tyre.width_m;
+    if (i == 0) car.wheel_radius_m = tyre.radius_m;
+    if (!(std::abs(tyre.radius_m - car.wheel_radius_m) <= kSameLength_m))
       throw InputError(source.Where(link.name), fmt::format("'{}': radius of the tyre", link.name),
-                       fmt::format("{} m as of '{}'", car.wheel_radius_m, tree.Link(car.wheels[0].link).name),
-                       fmt::format("{} m", radius_m));
+                       fmt::format("{:.6g} m as of '{}'", car.wheel_radius_m, tree.Link(car.wheels[0].link).name),
+                       fmt::format("{:.6g} m", tyre.radius_m));
     const Eigen::Vector3d middle = wheel.T_link_tyre.translation();
-    if ((middle - link.axis * link.axis.dot(middle)).norm() > kSameLength_m ||
-        std::abs(wheel.T_link_tyre.linear().col(2).dot(link.axis)) < kParallel)
-      throw InputError(source.Where(link.name), fmt::format("'{}': the tyre", link.name),
-                       "one that is round about its joint's axis");
+    if ((middle - link.axis * link.axis.dot(middle)).norm() > kSameLength_m)
+      throw InputError(source.Where(link.name), fmt::format("'{}': the tyre's middle", link.name),
+                       "on its joint's axis", Text(middle) + " from the joint");
     middles[i] = tree.T_root(wheel.link) * middle;
   }
   return middles;
@@ -226,49 +280,44 @@ void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_roo
   }
 }
 
+// A camera's optical frame in the link that its role names: x right, y down, z ahead in x ahead, y left, z up.
+Pose OpticalIn(const RoleName& camera) {
+  Pose T_link_optical = Pose::Identity();
+  if (!camera.role.ends_with("_optical_frame")) T_link_optical.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return T_link_optical;
+}
+
 }  // namespace
 
 Drivetrain ReadDrivetrain(const UrdfSource& source) {
   const TiXmlElement* element = source.document.RootElement()->FirstChildElement("drivetrain");
   if (element == nullptr)
-    throw InputError(source.path.string(), "the car needs an element <drivetrain .../> under <robot>");
+    throw InputError(
+        source.path.string(),
+        fmt::format("the car needs an element <drivetrain .../> under <robot>, or a map 'drivetrain' in {}",
+                    MappingFile(source.path).filename().string()));
   const std::string where = fmt::format("{}:{}", source.path.string(), element->Row());
-  const auto positive = [&](const char* name) {
+  return DrivetrainOf(where, "<drivetrain>", [&](const char* name) {
     double value = 0.0;
     const int status = element->QueryDoubleAttribute(name, &value);
     if (status == TIXML_NO_ATTRIBUTE) throw InputError(where, fmt::format("<drivetrain> needs '{}'", name));
     if (status != TIXML_SUCCESS || !(value > 0.0) || !std::isfinite(value))
       throw InputError(where, fmt::format("<drivetrain> '{}'", name), "a positive number", element->Attribute(name));
     return value;
-  };
-  Drivetrain d;
-  d.gear = positive("gear");
-  const double counts = positive("encoder_counts_per_motor_turn");
-  if (counts != std::floor(counts) || counts > 1e6)
-    throw InputError(where, "<drivetrain> 'encoder_counts_per_motor_turn'", "a whole number up to 1000000",
-                     fmt::format("{}", counts));
-  d.encoder_counts_per_motor_turn = static_cast<int>(counts);
-  d.motor_constant_v_s = positive("motor_constant_v_s");
-  d.resistance_ohm = positive("resistance_ohm");
-  d.rotor_inertia_kg_m2 = positive("rotor_inertia_kg_m2");
-  d.voltage_max_v = positive("voltage_max_v");
-  d.speed_max_m_s = positive("speed_max_m_s");
-  d.acceleration_max_m_s2 = positive("acceleration_max_m_s2");
-  d.steering_slew_rad_s = positive("steering_slew_rad_s");
-  d.tyre_friction = positive("tyre_friction");
-  return d;
+  });
 }
 
 void DeriveGeometry(const UrdfSource& source, const CarMapping& mapping, CarDescription& car) {
   Tree tree(source, car.links);
   FindRoles(source, mapping, tree, car);
-  const auto middles = DeriveTyres(source, tree, car);
+  const auto middles = DeriveTyres(source, mapping, tree, car);
   const Pose T_base_root = BaseInRoot(source, middles, car.wheel_radius_m).inverse();
   DeriveWheels(source, tree, middles, T_base_root, car);
   DeriveSteering(source, tree, T_base_root, car);
-  car.T_base_depth = T_base_root * tree.T_root(tree.LinkOf(mapping.depth_camera));
-  car.T_base_color = T_base_root * tree.T_root(tree.LinkOf(mapping.color_camera));
-  car.T_base_compass = T_base_root * tree.T_root(tree.LinkOf(mapping.compass));
+  const auto frame = [&](const RoleName& role) { return T_base_root * tree.T_root(tree.LinkOf(role)); };
+  car.T_base_depth = frame(mapping.depth_camera) * OpticalIn(mapping.depth_camera);
+  car.T_base_color = frame(mapping.color_camera) * OpticalIn(mapping.color_camera);
+  car.T_base_compass = frame(mapping.compass);
   if (!T_base_root.matrix().isIdentity(0.0)) PutBaseAboveRoot(T_base_root, car);
 }
 

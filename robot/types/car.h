@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +16,19 @@
 
 namespace merlin {
 
+// Triangles of one colour, out of a mesh file; in metres, z up.
+struct CarMesh {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Eigen::Vector3i> triangles;     // three places in vertices each, counter-clockwise from outside
+  std::optional<std::array<float, 4>> rgba;   // where the file says it
+};
+
 struct CarShape {
   enum class Kind { kBox, kCylinder, kSphere, kMesh };
   Kind kind = Kind::kBox;
   Eigen::Vector3d size_m{0, 0, 0};  // box: full edges; cylinder: radius, length (along z), 0; sphere: radius, 0, 0; mesh: scale
-  std::filesystem::path mesh;       // absolute, exists
+  std::filesystem::path mesh_file;  // absolute; what it holds:
+  std::shared_ptr<const CarMesh> mesh;
   Pose T_link_shape = Pose::Identity();
   std::string material;             // a name in materials.yaml; may be empty
   std::array<float, 4> rgba{0.5f, 0.5f, 0.5f, 1.0f};

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "robot/types/error.h"
+#include "tests/robot/mesh_text.h"
 
 namespace merlin {
 namespace {
@@ -291,14 +292,14 @@ TEST_F(Description, RefusesWhatUrdfdomRefusesAndSaysWhy) {
 
 TEST_F(Description, ResolvesMeshesAgainstTheUrdfsFolder) {
   const std::string box = "<box size=\"0.35 0.19 0.006\"/>";
-  File("body.stl", "mesh");
+  File("body.stl", mesh_text::StlText({}));
   for (const std::string name : {"body.stl", "package://merlin/body.stl", "./body.stl"}) {
     const fs::path urdf = File("car.urdf", Replaced(merlin_, box, "<mesh filename=\"" + name + "\" scale=\"1 2 3\"/>"));
     const CarDescription car = ReadCar(urdf);
     const CarShape& shape = Link(car, "chassis").visual[0];
     EXPECT_EQ(shape.kind, CarShape::Kind::kMesh);
-    EXPECT_TRUE(shape.mesh.is_absolute());
-    EXPECT_TRUE(fs::equivalent(shape.mesh, folder_ / "body.stl"));
+    EXPECT_TRUE(shape.mesh_file.is_absolute());
+    EXPECT_TRUE(fs::equivalent(shape.mesh_file, folder_ / "body.stl"));
     EXPECT_EQ(shape.size_m, Eigen::Vector3d(1, 2, 3));
   }
   for (const std::string name : {"none.stl", "package://merlin/none.stl", "package://merlin", "/nowhere/none.stl"}) {

@@ -1,5 +1,6 @@
 #include "tools/cli/licenses.h"
 
+#include <assimp/version.h>
 #include <fmt/core.h>
 #include <gnu/libc-version.h>
 #include <openssl/crypto.h>
@@ -43,6 +44,7 @@ std::vector<LinkedWork> LinkedWorks() {
   const std::vector<LinkedWork> always{
       {"Eigen", Dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION), "MPL-2.0", "headers"},
       {"OpenCV (core, imgproc, imgcodecs)", CV_VERSION, "Apache-2.0", "shared libraries"},
+      {"assimp", fmt::format("{}.{}", aiGetVersionMajor(), aiGetVersionMinor()), "BSD-3-Clause", "shared library"},
       {"urdfdom", "", "BSD-3-Clause", "shared library and headers"},
       {"TinyXML", Dotted(TIXML_MAJOR_VERSION, TIXML_MINOR_VERSION, TIXML_PATCH_VERSION), "Zlib",
        "shared library, through urdfdom"},
