@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "sim/spec.h"
 
@@ -27,25 +26,19 @@ void SetInertial(const CarLink& link, mjsBody* body) {
   body->explicitinertial = 1;
 }
 
-void AddJoint(const mjSpec* spec, const CarDescription& car, const CarLink& link, const mjsDefault* plain,
-              mjsBody* body) {
-  if (link.joint == CarLink::Joint::kFixed) return;
+// A joint moves where the car drives or steers; other joints are held at 0. How far the knuckles turn is their
+// linkage's business (see sim/drivetrain.h).
+void AddJoint(const CarDescription& car, std::size_t index, const mjsDefault* plain, mjsBody* body) {
+  const bool wheel = FindWheel(car, index) != nullptr;
+  if (!wheel && std::ranges::find(car.knuckles, index) == car.knuckles.end()) return;
   mjsJoint* joint = mjs_addJoint(body, plain);
-  SetName(joint->element, link.joint_name);
+  SetName(joint->element, car.links[index].joint_name);
   joint->type = mjJNT_HINGE;
-  Eigen::Vector3d::Map(joint->axis) = link.axis;
+  Eigen::Vector3d::Map(joint->axis) = car.links[index].axis;
   joint->limited = mjLIMITED_FALSE;
-  if (link.joint == CarLink::Joint::kRevolute) {
-    const double unit =
-        spec->compiler.degree ? 180.0 / std::numbers::pi : 1.0;  // the room's choice rules the whole spec
-    joint->limited = mjLIMITED_TRUE;
-    joint->range[0] = link.joint_min_rad * unit;
-    joint->range[1] = link.joint_max_rad * unit;
-  }
   // A quarter of the rotor for each wheel: behind ideal differentials the motor turns with the mean of the four, and
   // MuJoCo takes only the diagonal of an inertia set on the motor or tendon.
-  if (IsWheel(link))
-    joint->armature = car.drivetrain.rotor_inertia_kg_m2 * car.drivetrain.gear * car.drivetrain.gear / 4.0;
+  if (wheel) joint->armature = car.drivetrain.rotor_inertia_kg_m2 * car.drivetrain.gear * car.drivetrain.gear / 4.0;
 }
 
 void SetMaterial(mjSpec* spec, const CarShape& shape, const mjsDefault* plain, mjsGeom* geom) {
@@ -60,10 +53,15 @@ void SetMaterial(mjSpec* spec, const CarShape& shape, const mjsDefault* plain, m
 }
 
 void SetMesh(mjSpec* spec, const CarShape& shape, const std::string& name, const mjsDefault* plain, mjsGeom* geom) {
+  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float) && sizeof(Eigen::Vector3i) == 3 * sizeof(int));
   mjsMesh* mesh = mjs_addMesh(spec, plain);
   SetName(mesh->element, name);
-  mjs_setString(mesh->file, shape.mesh.c_str());
+  const std::vector<Eigen::Vector3f>& vertices = shape.mesh->vertices;
+  const std::vector<Eigen::Vector3i>& triangles = shape.mesh->triangles;
+  mjs_setFloat(mesh->uservert, vertices.data()->data(), static_cast<int>(3 * vertices.size()));
+  mjs_setInt(mesh->userface, triangles.data()->data(), static_cast<int>(3 * triangles.size()));
   Eigen::Vector3d::Map(mesh->scale) = shape.size_m;
+  mesh->inertia = mjMESH_INERTIA_SHELL;  // of no consequence; the others refuse a mesh that is open
   geom->type = mjGEOM_MESH;
   mjs_setString(geom->meshname, name.c_str());
 }
@@ -94,54 +92,69 @@ mjsGeom* AddShape(mjSpec* spec, const CarShape& shape, const std::string& name, 
   return geom;
 }
 
+// Meets the room (1, 1), never the car itself: wheels may steer past the chassis.
+void SetCollides(mjsGeom* geom) {
+  geom->group = kCollisionGroup;
+  geom->contype = 2, geom->conaffinity = 1;
+}
+
 // Values found to roll truly: circles within 0.1 % of Ackermann's radius, no drift at rest.
-void MakeTyre(const CarDescription& car, mjsGeom* geom) {
+void AddTyre(const CarDescription& car, const CarWheel& wheel, const mjsDefault* plain, mjsBody* body) {
+  mjsGeom* geom = mjs_addGeom(body, plain);
+  SetName(geom->element, car.links[wheel.link].name + "_collision_0");
+  SetPose(wheel.T_link_tyre, geom->pos, geom->quat);
   geom->type = mjGEOM_ELLIPSOID;
-  const double radius_m = geom->size[0], half_width_m = geom->size[1];
-  geom->size[0] = geom->size[1] = radius_m, geom->size[2] = half_width_m;
+  geom->size[0] = geom->size[1] = car.wheel_radius_m, geom->size[2] = wheel.width_m / 2.0;
   geom->condim = 3;    // no torsional friction: a tyre steered on the spot would fight it
   geom->priority = 1;  // else the larger friction of the pair would count, and a floor's default is 1
   geom->friction[0] = car.drivetrain.tyre_friction;
   geom->solref[0] = 0.01, geom->solref[1] = 1.0;
   geom->solimp[0] = 0.95, geom->solimp[1] = 0.99, geom->solimp[2] = 0.001;
+  SetCollides(geom);
 }
 
-void AddShapes(mjSpec* spec, const CarDescription& car, const CarLink& link, const mjsDefault* plain, mjsBody* body) {
+void AddVisual(mjSpec* spec, const CarLink& link, const mjsDefault* plain, mjsBody* body) {
   for (std::size_t i = 0; i < link.visual.size(); ++i) {
     mjsGeom* geom = AddShape(spec, link.visual[i], fmt::format("{}_visual_{}", link.name, i), plain, body);
     geom->group = kVisualGroup;
     geom->contype = geom->conaffinity = 0;
     SetMaterial(spec, link.visual[i], plain, geom);
   }
-  for (std::size_t i = 0; i < link.collision.size(); ++i) {
-    mjsGeom* geom = AddShape(spec, link.collision[i], fmt::format("{}_collision_{}", link.name, i), plain, body);
-    geom->group = kCollisionGroup;
-    geom->contype = 2,
-    geom->conaffinity = 1;  // meets the room (1, 1), never the car itself: wheels may steer past the chassis
-    if (IsWheel(link)) MakeTyre(car, geom);
-  }
+}
+
+void AddCollision(mjSpec* spec, const CarLink& link, const mjsDefault* plain, mjsBody* body) {
+  for (std::size_t i = 0; i < link.collision.size(); ++i)
+    SetCollides(AddShape(spec, link.collision[i], fmt::format("{}_collision_{}", link.name, i), plain, body));
 }
 
 }  // namespace
 
-bool IsWheel(const CarLink& link) { return link.joint == CarLink::Joint::kContinuous; }
+const CarWheel* FindWheel(const CarDescription& car, std::size_t link) {
+  const auto wheel = std::ranges::find(car.wheels, link, &CarWheel::link);
+  return wheel == car.wheels.end() ? nullptr : &*wheel;
+}
 
 void AddTo(mjSpec* spec, const CarDescription& car, const Pose& T_world_base) {
   const BuiltinDefaults plain;
-  for (const CarLink& link : car.links) {
+  for (std::size_t i = 0; i < car.links.size(); ++i) {
+    const CarLink& link = car.links[i];
     mjsBody* body = mjs_addBody(mjs_findBody(spec, link.parent.empty() ? "world" : link.parent.c_str()), plain.get());
     SetName(body->element, link.name);
     if (link.parent.empty()) {
       SetPose(T_world_base, body->pos, body->quat);
       mjsJoint* joint = mjs_addFreeJoint(body);
-      joint->align = mjALIGNFREE_FALSE;  // qpos is base_link's pose, not that of the centre of mass
+      joint->align = mjALIGNFREE_FALSE;  // qpos is the base's pose, not that of the centre of mass
       SetName(joint->element, "car");
     } else {
       SetPose(link.T_parent_link, body->pos, body->quat);
-      AddJoint(spec, car, link, plain.get(), body);
+      AddJoint(car, i, plain.get(), body);
     }
     SetInertial(link, body);
-    AddShapes(spec, car, link, plain.get(), body);
+    AddVisual(spec, link, plain.get(), body);
+    if (const CarWheel* wheel = FindWheel(car, i))
+      AddTyre(car, *wheel, plain.get(), body);
+    else
+      AddCollision(spec, link, plain.get(), body);
   }
 }
 

@@ -1,5 +1,5 @@
-// Builds the car's bodies in a MuJoCo spec from its description: a body, joint and shapes for each link, all named as
-// in the URDF (a fixed link becomes a body without a joint).
+// Builds the car's bodies in a MuJoCo spec from its description: a body and shapes for each link, all named as in the
+// URDF (a link that does not move becomes a body without a joint).
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -13,12 +13,12 @@ namespace merlin::sim::car_body {
 constexpr int kVisualGroup = 1;
 constexpr int kCollisionGroup = 3;
 
-// Adds the car with a free joint at T_world_base to the world body. Materials that the spec does not have yet are added
-// by name. The wheels' collision cylinders become ellipsoids of the same radius and width: a cylinder touches the
-// ground with two points, which scrub in a turn.
+// Adds the car with a free joint at T_world_base to the world body; of its other joints only those of wheels and
+// knuckles move. Materials that the spec does not have yet are added by name. A wheel touches the ground with an
+// ellipsoid of the tyre's radius and width: a cylinder would touch with two points, which scrub in a turn.
 void AddTo(mjSpec* spec, const CarDescription& car, const Pose& T_world_base);
 
-// A link that rolls on the ground.
-bool IsWheel(const CarLink& link);
+// The wheel whose link has this place in car.links; null if it is none.
+const CarWheel* FindWheel(const CarDescription& car, std::size_t link);
 
 }  // namespace merlin::sim::car_body

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "sim/car_body.h"
 #include "sim/spec.h"
 
 namespace merlin::sim::drivetrain {
@@ -15,7 +14,8 @@ namespace {
 constexpr char kTendon[] = "differential";
 constexpr char kMotor[] = "motor";
 constexpr char kServo[] = "steering_servo";
-constexpr char kServoLink[] = "steering_servo";
+constexpr char kServoJoint[] = "virtual_front_wheel_joint";
+constexpr char kVirtualWheel[] = "virtual_front_wheel";
 
 // Steering servo: a stiff position loop at the linkage. Guesses; with less rotor inertia the front wheels shimmy.
 constexpr double kServoStiffness_n_m_rad = 20.0;
@@ -28,12 +28,6 @@ constexpr double kSpeedIntegral_rad_s = 5.0;
 // When a command has expired. The drive's contract asks for 2 m/s2 after at most 0.2 s; the rest is margin.
 constexpr double kBraking_m_s2 = 2.5;
 
-const CarLink& FindLink(const CarDescription& car, const std::string& name) {
-  const auto link = std::find_if(car.links.begin(), car.links.end(), [&](const CarLink& l) { return l.name == name; });
-  if (link == car.links.end()) throw std::logic_error("the car has no link " + name);
-  return *link;
-}
-
 void CheckSpec(const char* error) {
   if (error != nullptr && *error != '\0') throw std::logic_error(std::string("MuJoCo refuses an actuator: ") + error);
 }
@@ -42,7 +36,7 @@ void CheckSpec(const char* error) {
 // side is +1 for the left wheel.
 double WheelAngle_rad(const CarDescription& car, double middle_rad, double side) {
   const double tangent = std::tan(middle_rad);
-  return std::atan2(car.wheelbase_m * tangent, car.wheelbase_m - side * 0.5 * car.track_m * tangent);
+  return std::atan2(car.wheelbase_m * tangent, car.wheelbase_m - side * 0.5 * car.steering_track_m * tangent);
 }
 
 // The quartic through 0 that fits WheelAngle best over the steering range; MuJoCo's joint equality takes no other law.
@@ -58,12 +52,11 @@ Eigen::Vector4d AckermannPolynomial(const CarDescription& car, double side) {
   return powers.colPivHouseholderQr().solve(angles);
 }
 
-void AddLinkage(mjSpec* spec, const CarDescription& car, const mjsDefault* plain, const std::string& knuckle,
-                double side) {
+void AddLinkage(mjSpec* spec, const CarDescription& car, const mjsDefault* plain, std::size_t knuckle, double side) {
   mjsEquality* equality = mjs_addEquality(spec, plain);
   equality->type = mjEQ_JOINT;
-  mjs_setString(equality->name1, FindLink(car, knuckle).joint_name.c_str());
-  mjs_setString(equality->name2, FindLink(car, kServoLink).joint_name.c_str());
+  mjs_setString(equality->name1, car.links[knuckle].joint_name.c_str());
+  mjs_setString(equality->name2, kServoJoint);
   equality->data[0] = 0.0;
   Eigen::Vector4d::Map(equality->data + 1) = AckermannPolynomial(car, side);
 }
@@ -73,8 +66,7 @@ void AddMotor(mjSpec* spec, const CarDescription& car, const mjsDefault* plain) 
   // Ideal differentials: the motor turns with the mean of the four wheels and shares its torque equally.
   mjsTendon* tendon = mjs_addTendon(spec, plain);
   SetName(tendon->element, kTendon);
-  for (const CarLink& link : car.links)
-    if (car_body::IsWheel(link)) mjs_wrapJoint(tendon, link.joint_name.c_str(), 0.25);
+  for (const CarWheel& wheel : car.wheels) mjs_wrapJoint(tendon, car.links[wheel.link].joint_name.c_str(), 0.25);
   mjsActuator* motor = mjs_addActuator(spec, plain);
   SetName(motor->element, kMotor);
   double motor_constant[2] = {d.motor_constant_v_s, d.motor_constant_v_s};
@@ -87,15 +79,34 @@ void AddMotor(mjSpec* spec, const CarDescription& car, const mjsDefault* plain) 
   motor->ctrlrange[0] = -d.voltage_max_v, motor->ctrlrange[1] = d.voltage_max_v;
 }
 
+// The virtual wheel midway between the front ones, which the servo turns and whose angle the linkage follows: a body
+// that nobody sees or feels. MuJoCo wants some mass of it; its inertia is the servo's.
+void AddVirtualWheel(mjSpec* spec, const CarDescription& car, const mjsDefault* plain) {
+  mjsBody* body = mjs_addBody(mjs_findBody(spec, car.links[0].name.c_str()), plain);
+  SetName(body->element, kVirtualWheel);
+  body->pos[0] = car.wheelbase_m;
+  body->mass = 1e-12;
+  Eigen::Vector3d::Map(body->ipos).setZero();
+  Eigen::Vector3d::Map(body->inertia).setConstant(1e-12);
+  body->explicitinertial = 1;
+  mjsJoint* joint = mjs_addJoint(body, plain);
+  SetName(joint->element, kServoJoint);
+  joint->type = mjJNT_HINGE;
+  joint->axis[0] = 0.0, joint->axis[1] = 0.0, joint->axis[2] = 1.0;
+  const double unit = spec->compiler.degree ? 180.0 / std::numbers::pi : 1.0;  // the room's choice rules the whole spec
+  joint->limited = mjLIMITED_TRUE;
+  joint->range[0] = -car.steering_max_rad * unit, joint->range[1] = car.steering_max_rad * unit;
+  joint->armature = kServoInertia_kg_m2;
+}
+
 void AddServo(mjSpec* spec, const CarDescription& car, const mjsDefault* plain) {
-  const std::string& joint_name = FindLink(car, kServoLink).joint_name;
-  mjs_asJoint(mjs_findElement(spec, mjOBJ_JOINT, joint_name.c_str()))->armature = kServoInertia_kg_m2;
+  AddVirtualWheel(spec, car, plain);
   mjsActuator* servo = mjs_addActuator(spec, plain);
   SetName(servo->element, kServo);
   double damping[1] = {kServoDamping_n_m_s_rad}, slew[1] = {car.drivetrain.steering_slew_rad_s};
   CheckSpec(mjs_setToPID(servo, kServoStiffness_n_m_rad, damping, nullptr, nullptr, nullptr, slew, 0.0, mjINPUT_POS));
   servo->trntype = mjTRN_JOINT;
-  mjs_setString(servo->target, joint_name.c_str());
+  mjs_setString(servo->target, kServoJoint);
   servo->ctrllimited = mjLIMITED_TRUE;
   servo->ctrlrange[0] = -car.steering_max_rad, servo->ctrlrange[1] = car.steering_max_rad;
 }
@@ -103,9 +114,9 @@ void AddServo(mjSpec* spec, const CarDescription& car, const mjsDefault* plain) 
 // What the motor shaft sees of the car: its mass at the wheel's radius, the wheels and the rotor.
 double ShaftInertia_kg_m2(const CarDescription& car) {
   double mass_kg = 0.0, wheels_kg_m2 = 0.0;
-  for (const CarLink& link : car.links) {
-    mass_kg += link.mass_kg;
-    if (!car_body::IsWheel(link)) continue;
+  for (const CarLink& link : car.links) mass_kg += link.mass_kg;
+  for (const CarWheel& wheel : car.wheels) {
+    const CarLink& link = car.links[wheel.link];
     const Eigen::Vector3d axis = link.T_link_inertial.linear().transpose() * link.axis;
     wheels_kg_m2 += axis.dot(link.inertia_kg_m2 * axis);
   }
@@ -130,14 +141,14 @@ void AddTo(mjSpec* spec, const CarDescription& car) {
   const BuiltinDefaults plain;
   AddMotor(spec, car, plain.get());
   AddServo(spec, car, plain.get());
-  AddLinkage(spec, car, plain.get(), "front_left_knuckle", +1.0);
-  AddLinkage(spec, car, plain.get(), "front_right_knuckle", -1.0);
+  AddLinkage(spec, car, plain.get(), car.knuckles[0], +1.0);
+  AddLinkage(spec, car, plain.get(), car.knuckles[1], -1.0);
 }
 
 Controller::Controller(const mjModel* model, const CarDescription& car)
     : car_(car), shaft_inertia_kg_m2_(ShaftInertia_kg_m2(car)) {
   const int motor = mj_name2id(model, mjOBJ_ACTUATOR, kMotor), servo = mj_name2id(model, mjOBJ_ACTUATOR, kServo);
-  const int joint = mj_name2id(model, mjOBJ_JOINT, FindLink(car, kServoLink).joint_name.c_str());
+  const int joint = mj_name2id(model, mjOBJ_JOINT, kServoJoint);
   if (motor < 0 || servo < 0 || joint < 0) throw std::logic_error("the model has no drivetrain");
   motor_ctrl_ = model->actuator_ctrladr[motor];
   motor_output_ = model->actuator_outadr[motor];

@@ -105,8 +105,7 @@ void World::NameParts(const CarDescription& car, const std::vector<Obstacle>& ob
   base_body_ = body_id(car.links[0].name);
   wheel_radius_m_ = car.wheel_radius_m;
   std::vector<bool> wheel_bodies(model_->nbody, false);
-  for (const CarLink& link : car.links)
-    if (car_body::IsWheel(link)) wheel_bodies[body_id(link.name)] = true;
+  for (const CarWheel& wheel : car.wheels) wheel_bodies[body_id(car.links[wheel.link].name)] = true;
   for (int geom = 0; geom < model_->ngeom; ++geom) {
     const int body = model_->geom_bodyid[geom];
     const char* name = mj_id2name(model_.get(), mjOBJ_GEOM, geom);

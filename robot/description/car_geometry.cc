@@ -5,85 +5,286 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <optional>
+#include <set>
+#include <vector>
 
+#include "robot/description/drivetrain_numbers.h"
 #include "robot/types/error.h"
+#include "robot/types/nearest_name.h"
 
 namespace merlin {
 namespace {
 
-constexpr std::array kWheels = {"front_left_wheel", "front_right_wheel", "rear_left_wheel", "rear_right_wheel"};
-constexpr std::array kSteeredLinks = {"steering_servo", "front_left_knuckle", "front_right_knuckle"};
-constexpr double kSameLength_m = 1e-6;  // lengths in the file closer than this are the same
+constexpr double kSameLength_m = 5e-4;       // lengths that differ by less are the same: files round
+constexpr double kParallel = 0.99;           // cosine of two directions that are the same
+constexpr double kTrailMax = 0.02;           // of the wheelbase: a wheel's middle before or behind its steering axis
+constexpr std::array kSides = {+1.0, -1.0};  // left, right
 
-// The car's links with their poses in the base frame, joints at 0.
+std::string Text(const Eigen::Vector3d& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", p.x(), p.y(), p.z()); }
+
+// The links by name, with their poses in the root's frame at joint angles 0.
 class Tree {
  public:
-  Tree(const UrdfSource& source, const std::vector<CarLink>& links) : source_(source) {
+  Tree(const UrdfSource& source, std::vector<CarLink>& links) : source_(source), links_(links) {
     for (const CarLink& link : links) {
-      const Pose T_base_parent = link.parent.empty() ? Pose::Identity() : nodes_.at(link.parent).T_base_link;
-      nodes_.emplace(link.name, Node{&link, T_base_parent * link.T_parent_link});
+      parents_.push_back(link.parent.empty() ? 0 : FindLink(link.parent));
+      T_root_link_.push_back(link.parent.empty() ? Pose::Identity()
+                                                 : T_root_link_[parents_.back()] * link.T_parent_link);
     }
   }
-  const CarLink& Link(const std::string& name) const { return *Find(name).link; }
-  Pose T_base(const std::string& name) const { return Find(name).T_base_link; }
+  CarLink& Link(std::size_t index) { return links_[index]; }
+  const Pose& T_root(std::size_t index) const { return T_root_link_[index]; }
+  Eigen::Vector3d AxisInRoot(std::size_t index) const { return T_root_link_[index].linear() * links_[index].axis; }
+  bool IsBelow(std::size_t index, std::size_t ancestor) const {
+    while (index != ancestor && index != 0) index = parents_[index];
+    return index == ancestor;
+  }
+  std::size_t LinkOf(const RoleName& frame) const {
+    return Find(frame, "link", [](const CarLink& link) { return link.name; });
+  }
+  std::size_t LinkBehind(const RoleName& joint) const {
+    return Find(joint, "joint", [](const CarLink& link) { return link.joint_name; });
+  }
 
  private:
-  struct Node {
-    const CarLink* link;
-    Pose T_base_link;
-  };
-  const Node& Find(const std::string& name) const {
-    const auto node = nodes_.find(name);
-    if (node == nodes_.end()) throw InputError(source_.path.string(), fmt::format("the car needs a link '{}'", name));
-    return node->second;
+  std::size_t FindLink(const std::string& name) const {
+    return static_cast<std::size_t>(std::ranges::find(links_, name, &CarLink::name) - links_.begin());
   }
+  template <class NameOf>
+  std::size_t Find(const RoleName& role, const std::string& kind, NameOf name_of) const {
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      known.push_back(name_of(links_[i]));
+      if (!known.back().empty() && known.back() == role.name) return i;
+    }
+    std::erase(known, "");
+    const std::string nearest = NearestName(role.name, known);
+    const std::string hint = nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
+    if (!role.where.empty())
+      throw InputError(role.where, fmt::format("'{}' names {} '{}', which is not in {}{}", role.role, kind, role.name,
+                                               source_.path.filename().string(), hint));
+    throw InputError(source_.path.string(),
+                     fmt::format("the car needs a {} '{}', or another that {} names for it{}", kind, role.name,
+                                 MappingFile(source_.path).filename().string(), hint));
+  }
+
   const UrdfSource& source_;
-  std::map<std::string, Node> nodes_;
+  std::vector<CarLink>& links_;
+  std::vector<std::size_t> parents_;
+  std::vector<Pose> T_root_link_;
 };
 
-double WheelRadius(const UrdfSource& source, const CarLink& wheel) {
-  if (wheel.joint != CarLink::Joint::kContinuous)
-    throw InputError(source.Where(wheel.joint_name), fmt::format("'{}' must turn", wheel.name), "a continuous joint");
-  if (wheel.collision.size() != 1 || wheel.collision[0].kind != CarShape::Kind::kCylinder)
-    throw InputError(source.Where(wheel.name), fmt::format("'{}': the tyre", wheel.name), "one collision cylinder");
-  if (!(wheel.mass_kg > 0.0)) throw InputError(source.Where(wheel.name), fmt::format("'{}' needs a mass", wheel.name));
-  return wheel.collision[0].size_m.x();
+// One role for each joint, and each joint able to play it.
+void FindRoles(const UrdfSource& source, const CarMapping& mapping, Tree& tree, CarDescription& car) {
+  std::set<std::string> taken;
+  const auto find = [&](const RoleName& role, CarLink::Joint kind, const char* must, const char* expected) {
+    const std::size_t index = tree.LinkBehind(role);
+    const CarLink& link = tree.Link(index);
+    if (!taken.insert(role.name).second)
+      throw InputError(role.where, fmt::format("'{}': joint '{}' already has another role", role.role, role.name));
+    if (link.joint != kind)
+      throw InputError(source.Where(role.name), fmt::format("joint '{}' must {}", role.name, must), expected);
+    if (!(link.mass_kg > 0.0))
+      throw InputError(source.Where(link.name), fmt::format("link '{}' moves: it needs a mass", link.name));
+    return index;
+  };
+  for (std::size_t i = 0; i < 4; ++i)
+    car.wheels[i].link =
+        find(mapping.wheel_joints[i], CarLink::Joint::kContinuous, "turn endlessly", "type continuous");
+  for (std::size_t i = 0; i < 2; ++i) {
+    car.knuckles[i] = find(mapping.steer_joints[i], CarLink::Joint::kRevolute, "steer", "type revolute, with limits");
+    if (!tree.IsBelow(car.wheels[i].link, car.knuckles[i]))
+      throw InputError(source.Where(mapping.wheel_joints[i].name),
+                       fmt::format("joint '{}' does not hang on what steers it", mapping.wheel_joints[i].name),
+                       fmt::format("a link below joint '{}'", mapping.steer_joints[i].name));
+  }
 }
 
-// Wheelbase, track, radius and the largest steering angle; the four wheels must agree on them.
-void DeriveWheels(const UrdfSource& source, const Tree& tree, CarDescription& car) {
-  const Eigen::Vector3d front_left = tree.T_base(kWheels[0]).translation();
-  const Eigen::Vector3d rear_left = tree.T_base(kWheels[2]).translation();
-  car.wheel_radius_m = WheelRadius(source, tree.Link(kWheels[0]));
-  car.wheelbase_m = front_left.x() - rear_left.x();
-  car.track_m = 2.0 * front_left.y();
-  if (!(car.wheelbase_m > 0.0 && car.track_m > 0.0))
-    throw InputError(source.Where(kWheels[0]), "wheelbase and track", "positive lengths",
-                     fmt::format("{} m and {} m", car.wheelbase_m, car.track_m));
-  for (const std::string wheel : kWheels) {
-    const Eigen::Vector3d expected(wheel.starts_with("front") ? car.wheelbase_m : 0.0,
-                                   (wheel.find("left") != std::string::npos ? 0.5 : -0.5) * car.track_m,
-                                   car.wheel_radius_m);
-    const Eigen::Vector3d centre = tree.T_base(wheel).translation();
-    if ((centre - expected).norm() > kSameLength_m)
-      throw InputError(source.Where(wheel),
-                       fmt::format("'{}': base_link lies on the ground below the rear axle's middle", wheel),
-                       fmt::format("its centre at ({}, {}, {}) m", expected.x(), expected.y(), expected.z()),
-                       fmt::format("({}, {}, {}) m", centre.x(), centre.y(), centre.z()));
-    if (std::abs(WheelRadius(source, tree.Link(wheel)) - car.wheel_radius_m) > kSameLength_m)
-      throw InputError(source.Where(wheel), fmt::format("'{}': radius", wheel),
-                       fmt::format("{} m as the others", car.wheel_radius_m));
+// A wheel's tyre: where its middle is, and how large.
+struct Tyre {
+  Pose T_link_tyre = Pose::Identity();
+  double radius_m = 0.0, width_m = 0.0;
+};
+
+// The frame at a point whose z is the axle.
+Pose AtAxle(const Eigen::Vector3d& middle, const Eigen::Vector3d& axis) {
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+  pose.translation() = middle;
+  return pose;
+}
+
+// The size of a mesh about the axle: its farthest vertex, and its middle along the axle.
+Tyre MeshTyre(const CarShape& shape, const Eigen::Vector3d& axis) {
+  double radius_m = 0.0, nearest_m = HUGE_VAL, farthest_m = -HUGE_VAL;
+  for (const Eigen::Vector3f& vertex : shape.mesh->vertices) {
+    const Eigen::Vector3d point = shape.T_link_shape * shape.size_m.cwiseProduct(vertex.cast<double>());
+    const double along_m = axis.dot(point);
+    radius_m = std::max(radius_m, (point - along_m * axis).norm());
+    nearest_m = std::min(nearest_m, along_m), farthest_m = std::max(farthest_m, along_m);
   }
-  for (const std::string link : kSteeredLinks)
-    if (tree.Link(link).joint != CarLink::Joint::kRevolute)
-      throw InputError(source.Where(tree.Link(link).joint_name), fmt::format("'{}' must steer", link),
-                       "a revolute joint");
-  car.steering_max_rad =
-      std::min(-tree.Link("steering_servo").joint_min_rad, tree.Link("steering_servo").joint_max_rad);
-  if (!(car.steering_max_rad > 0.0 && car.steering_max_rad < 1.5))
-    throw InputError(source.Where(tree.Link("steering_servo").joint_name), "steering limits",
-                     "both sides of 0, below 1.5 rad");
+  return {AtAxle(0.5 * (nearest_m + farthest_m) * axis, axis), radius_m, farthest_m - nearest_m};
+}
+
+// What the largest round thing among the shapes says. A cylinder must lie along the axle; a ball is round about all,
+// and a mesh is taken for round.
+std::optional<Tyre> RoundTyre(const std::vector<CarShape>& shapes, const Eigen::Vector3d& axis) {
+  std::optional<Tyre> largest;
+  for (const CarShape& shape : shapes) {
+    Tyre tyre{shape.T_link_shape, shape.size_m.x(), shape.size_m.y()};
+    if (shape.kind == CarShape::Kind::kBox) continue;
+    if (shape.kind == CarShape::Kind::kCylinder && std::abs(shape.T_link_shape.linear().col(2).dot(axis)) < kParallel)
+      continue;
+    if (shape.kind == CarShape::Kind::kSphere)
+      tyre = {AtAxle(shape.T_link_shape.translation(), axis), shape.size_m.x(), 2.0 * shape.size_m.x()};
+    if (shape.kind == CarShape::Kind::kMesh) tyre = MeshTyre(shape, axis);
+    if (!largest || tyre.radius_m > largest->radius_m) largest = tyre;
+  }
+  return largest;
+}
+
+// By the shapes that touch, else by those that are seen; what the mapping says goes before both.
+Tyre FindTyre(const UrdfSource& source, const CarMapping& mapping, const CarLink& link) {
+  std::optional<Tyre> tyre = RoundTyre(link.collision, link.axis);
+  if (!tyre) tyre = RoundTyre(link.visual, link.axis);
+  if (!tyre && mapping.wheel_radius_m && mapping.wheel_width_m) tyre = {AtAxle({0, 0, 0}, link.axis), 0.0, 0.0};
+  if (!tyre)
+    throw InputError(
+        source.Where(link.name), fmt::format("'{}': how large the tyre is", link.name),
+        fmt::format("a cylinder about the axle, a sphere or a mesh, or wheel_radius_m and wheel_width_m in {}",
+                    MappingFile(source.path).filename().string()));
+  if (mapping.wheel_radius_m) tyre->radius_m = *mapping.wheel_radius_m;
+  if (mapping.wheel_width_m) tyre->width_m = *mapping.wheel_width_m;
+  return *tyre;
+}
+
+// The wheels' radius and their middles in the root's frame.
+std::array<Eigen::Vector3d, 4> DeriveTyres(const UrdfSource& source, const CarMapping& mapping, Tree& tree,
+                                           CarDescription& car) {
+  std::array<Eigen::Vector3d, 4> middles;
+  for (std::size_t i = 0; i < 4; ++i) {
+    CarWheel& wheel = car.wheels[i];
+    const CarLink& link = tree.Link(wheel.link);
+    const Tyre tyre = FindTyre(source, mapping, link);
+    wheel.T_link_tyre = tyre.T_link_tyre, wheel.width_m = tyre.width_m;
+    if (i == 0) car.wheel_radius_m = tyre.radius_m;
+    if (!(std::abs(tyre.radius_m - car.wheel_radius_m) <= kSameLength_m))
+      throw InputError(source.Where(link.name), fmt::format("'{}': radius of the tyre", link.name),
+                       fmt::format("{:.6g} m as of '{}'", car.wheel_radius_m, tree.Link(car.wheels[0].link).name),
+                       fmt::format("{:.6g} m", tyre.radius_m));
+    const Eigen::Vector3d middle = wheel.T_link_tyre.translation();
+    if ((middle - link.axis * link.axis.dot(middle)).norm() > kSameLength_m)
+      throw InputError(source.Where(link.name), fmt::format("'{}': the tyre's middle", link.name),
+                       "on its joint's axis", Text(middle) + " from the joint");
+    middles[i] = tree.T_root(wheel.link) * middle;
+  }
+  return middles;
+}
+
+// From the rear axle and the way to the front one. A base within rounding of the root is the root.
+Pose BaseInRoot(const UrdfSource& source, const std::array<Eigen::Vector3d, 4>& middles, double radius_m) {
+  const Eigen::Vector3d rear = 0.5 * (middles[2] + middles[3]), front = 0.5 * (middles[0] + middles[1]);
+  const Eigen::Vector3d axle = middles[2] - middles[3];
+  const Eigen::Vector3d left = axle.normalized();
+  const Eigen::Vector3d way = front - rear - left * left.dot(front - rear);
+  if (!(axle.norm() > kSameLength_m && way.norm() > kSameLength_m))
+    throw InputError(source.path.string(), "the wheels stand in one another", "two axles, one before the other");
+  const Eigen::Vector3d ahead = way.normalized();
+  Pose T_root_base = Pose::Identity();
+  T_root_base.linear() << ahead, left, ahead.cross(left);
+  T_root_base.translation() = rear - radius_m * T_root_base.linear().col(2);
+  if (!(T_root_base.linear()(2, 2) > kParallel))
+    throw InputError(source.path.string(), "the wheels do not stand as their roles say",
+                     "the root's z up, left wheels on the left, front wheels in front");
+  return T_root_base.isApprox(Pose::Identity(), 1e-6) ? Pose::Identity() : T_root_base;
+}
+
+void PutBaseAboveRoot(const Pose& T_base_root, CarDescription& car) {
+  CarLink base;
+  base.name = "base_link";
+  while (std::ranges::find(car.links, base.name, &CarLink::name) != car.links.end()) base.name += "_";
+  car.links[0].parent = base.name;
+  car.links[0].joint_name = base.name + "_joint";
+  car.links[0].T_parent_link = T_base_root;
+  car.links.insert(car.links.begin(), base);
+  for (CarWheel& wheel : car.wheels) ++wheel.link;
+  for (std::size_t& knuckle : car.knuckles) ++knuckle;
+}
+
+// Wheels as on a car: two axles, each symmetric about the base's x axis, all on the ground.
+void DeriveWheels(const UrdfSource& source, Tree& tree, const std::array<Eigen::Vector3d, 4>& middles_root,
+                  const Pose& T_base_root, CarDescription& car) {
+  std::array<Eigen::Vector3d, 4> middles;
+  for (std::size_t i = 0; i < 4; ++i) middles[i] = T_base_root * middles_root[i];
+  const double front_track_m = middles[0].y() - middles[1].y(), rear_track_m = middles[2].y() - middles[3].y();
+  car.wheelbase_m = 0.5 * (middles[0].x() + middles[1].x());
+  car.track_m = 0.5 * (front_track_m + rear_track_m);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CarLink& link = tree.Link(car.wheels[i].link);
+    const Eigen::Vector3d expected(i < 2 ? car.wheelbase_m : 0.0,
+                                   0.5 * kSides[i % 2] * (i < 2 ? front_track_m : rear_track_m), car.wheel_radius_m);
+    if (!((middles[i] - expected).norm() <= kSameLength_m))
+      throw InputError(source.Where(link.name), fmt::format("'{}': the wheels are not two axles of one car", link.name),
+                       "its middle at " + Text(expected) + " from the ground below the rear axle's middle",
+                       Text(middles[i]));
+    const double along = (T_base_root.linear() * tree.AxisInRoot(car.wheels[i].link)).y();
+    if (std::abs(along) < kParallel)
+      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': axis", link.joint_name),
+                       "the axle's direction");
+    if (along < 0.0) link.axis = -link.axis;
+  }
+}
+
+// Ackermann's law, the other way: the middle angle at which the wheel of that side stands at its own.
+double MiddleAngle_rad(const CarDescription& car, double wheel_rad, double side) {
+  const double tangent = std::tan(wheel_rad);
+  return std::atan2(tangent, 1.0 + 0.5 * side * car.steering_track_m / car.wheelbase_m * tangent);
+}
+
+void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_root, CarDescription& car) {
+  std::array<Eigen::Vector3d, 2> pivots;
+  for (std::size_t i = 0; i < 2; ++i) {
+    CarLink& link = tree.Link(car.knuckles[i]);
+    const Eigen::Vector3d axis = T_base_root.linear() * tree.AxisInRoot(car.knuckles[i]);
+    if (std::abs(axis.z()) < kParallel)
+      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': axis", link.joint_name),
+                       "an upright one");
+    if (axis.z() < 0.0) {
+      link.axis = -link.axis;
+      std::swap(link.joint_min_rad, link.joint_max_rad);
+      link.joint_min_rad = -link.joint_min_rad, link.joint_max_rad = -link.joint_max_rad;
+    }
+    const Eigen::Vector3d joint = T_base_root * tree.T_root(car.knuckles[i]).translation();
+    pivots[i] = joint + axis * (car.wheel_radius_m - joint.z()) / axis.z();
+    if (!(std::abs(pivots[i].x() - car.wheelbase_m) <= kTrailMax * car.wheelbase_m))
+      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': its axis", link.joint_name),
+                       fmt::format("at x {:.6g} m as the wheel's middle", car.wheelbase_m),
+                       fmt::format("{:.6g} m", pivots[i].x()));
+  }
+  car.steering_track_m = pivots[0].y() - pivots[1].y();
+  if (!(car.steering_track_m > 0.0 && std::abs(pivots[0].y() + pivots[1].y()) <= 2.0 * kSameLength_m))
+    throw InputError(source.Where(tree.Link(car.knuckles[0]).joint_name), "the two steering axes",
+                     "one on each side, equally far out",
+                     fmt::format("y {:.6g} m and {:.6g} m", pivots[0].y(), pivots[1].y()));
+  car.steering_max_rad = HUGE_VAL;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const CarLink& link = tree.Link(car.knuckles[i]);
+    if (!(link.joint_min_rad < 0.0 && link.joint_max_rad > 0.0 &&
+          std::max(-link.joint_min_rad, link.joint_max_rad) < 1.5))
+      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': steering limits", link.joint_name),
+                       "both sides of 0, below 1.5 rad",
+                       fmt::format("{} and {} rad", link.joint_min_rad, link.joint_max_rad));
+    for (const double limit_rad : {link.joint_min_rad, link.joint_max_rad})
+      car.steering_max_rad = std::min(car.steering_max_rad, std::abs(MiddleAngle_rad(car, limit_rad, kSides[i])));
+  }
+}
+
+// A camera's optical frame in the link that its role names: x right, y down, z ahead in x ahead, y left, z up.
+Pose OpticalIn(const RoleName& camera) {
+  Pose T_link_optical = Pose::Identity();
+  if (!camera.role.ends_with("_optical_frame")) T_link_optical.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return T_link_optical;
 }
 
 }  // namespace
@@ -91,40 +292,33 @@ void DeriveWheels(const UrdfSource& source, const Tree& tree, CarDescription& ca
 Drivetrain ReadDrivetrain(const UrdfSource& source) {
   const TiXmlElement* element = source.document.RootElement()->FirstChildElement("drivetrain");
   if (element == nullptr)
-    throw InputError(source.path.string(), "the car needs an element <drivetrain .../> under <robot>");
+    throw InputError(
+        source.path.string(),
+        fmt::format("the car needs an element <drivetrain .../> under <robot>, or a map 'drivetrain' in {}",
+                    MappingFile(source.path).filename().string()));
   const std::string where = fmt::format("{}:{}", source.path.string(), element->Row());
-  const auto positive = [&](const char* name) {
+  return DrivetrainOf(where, "<drivetrain>", [&](const char* name) {
     double value = 0.0;
     const int status = element->QueryDoubleAttribute(name, &value);
     if (status == TIXML_NO_ATTRIBUTE) throw InputError(where, fmt::format("<drivetrain> needs '{}'", name));
     if (status != TIXML_SUCCESS || !(value > 0.0) || !std::isfinite(value))
       throw InputError(where, fmt::format("<drivetrain> '{}'", name), "a positive number", element->Attribute(name));
     return value;
-  };
-  Drivetrain d;
-  d.gear = positive("gear");
-  const double counts = positive("encoder_counts_per_motor_turn");
-  if (counts != std::floor(counts) || counts > 1e6)
-    throw InputError(where, "<drivetrain> 'encoder_counts_per_motor_turn'", "a whole number up to 1000000",
-                     fmt::format("{}", counts));
-  d.encoder_counts_per_motor_turn = static_cast<int>(counts);
-  d.motor_constant_v_s = positive("motor_constant_v_s");
-  d.resistance_ohm = positive("resistance_ohm");
-  d.rotor_inertia_kg_m2 = positive("rotor_inertia_kg_m2");
-  d.voltage_max_v = positive("voltage_max_v");
-  d.speed_max_m_s = positive("speed_max_m_s");
-  d.acceleration_max_m_s2 = positive("acceleration_max_m_s2");
-  d.steering_slew_rad_s = positive("steering_slew_rad_s");
-  d.tyre_friction = positive("tyre_friction");
-  return d;
+  });
 }
 
-void DeriveGeometry(const UrdfSource& source, CarDescription& car) {
-  const Tree tree(source, car.links);
-  DeriveWheels(source, tree, car);
-  car.T_base_depth = tree.T_base("depth_camera_optical_frame");
-  car.T_base_color = tree.T_base("color_camera_optical_frame");
-  car.T_base_compass = tree.T_base("compass_frame");
+void DeriveGeometry(const UrdfSource& source, const CarMapping& mapping, CarDescription& car) {
+  Tree tree(source, car.links);
+  FindRoles(source, mapping, tree, car);
+  const auto middles = DeriveTyres(source, mapping, tree, car);
+  const Pose T_base_root = BaseInRoot(source, middles, car.wheel_radius_m).inverse();
+  DeriveWheels(source, tree, middles, T_base_root, car);
+  DeriveSteering(source, tree, T_base_root, car);
+  const auto frame = [&](const RoleName& role) { return T_base_root * tree.T_root(tree.LinkOf(role)); };
+  car.T_base_depth = frame(mapping.depth_camera) * OpticalIn(mapping.depth_camera);
+  car.T_base_color = frame(mapping.color_camera) * OpticalIn(mapping.color_camera);
+  car.T_base_compass = frame(mapping.compass);
+  if (!T_base_root.matrix().isIdentity(0.0)) PutBaseAboveRoot(T_base_root, car);
 }
 
 }  // namespace merlin

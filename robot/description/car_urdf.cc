@@ -4,9 +4,13 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
 #include "robot/description/car_geometry.h"
+#include "robot/description/car_mapping.h"
 #include "robot/description/description.h"
+#include "robot/description/mesh_file.h"
 #include "robot/description/urdf_source.h"
 #include "robot/types/error.h"
 
@@ -36,6 +40,18 @@ std::filesystem::path MeshPath(const UrdfSource& source, const std::string& link
   return path.lexically_normal();
 }
 
+// All in one plane, to a millionth of its extent.
+bool IsFlat(const CarMesh& mesh) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    middle += vertex.cast<double>() / static_cast<double>(mesh.vertices.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    spread += (vertex.cast<double>() - middle) * (vertex.cast<double>() - middle).transpose();
+  const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues();
+  return !(moments[0] > 1e-12 * moments[2]);
+}
+
 CarShape ToShape(const UrdfSource& source, const std::string& link, const urdf::Geometry* geometry,
                  const urdf::Pose& origin) {
   if (geometry == nullptr) throw InputError(source.Where(link), fmt::format("link '{}': shape without geometry", link));
@@ -58,7 +74,7 @@ CarShape ToShape(const UrdfSource& source, const std::string& link, const urdf::
     shape.kind = CarShape::Kind::kMesh;
     shape.size_m = {mesh->scale.x, mesh->scale.y, mesh->scale.z};
     positive = (shape.size_m.array() > 0.0).all();
-    shape.mesh = MeshPath(source, link, mesh->filename);
+    shape.mesh_file = MeshPath(source, link, mesh->filename);
   }
   if (!positive || !shape.size_m.allFinite())
     throw InputError(source.Where(link), fmt::format("link '{}': size of a shape", link), "positive numbers",
@@ -103,9 +119,12 @@ void ReadJoint(const UrdfSource& source, const urdf::Joint& joint, CarLink& link
     case urdf::Joint::CONTINUOUS:
       link.joint = CarLink::Joint::kContinuous;
       break;
+    case urdf::Joint::PRISMATIC:
+      link.joint = CarLink::Joint::kPrismatic;
+      break;
     default:
       throw InputError(source.Where(joint.name), fmt::format("joint '{}': type", joint.name),
-                       "fixed, revolute or continuous");
+                       "fixed, revolute, continuous or prismatic: the car is one piece");
   }
   link.axis = {joint.axis.x, joint.axis.y, joint.axis.z};
   if (!(link.axis.norm() > 0.0))
@@ -113,33 +132,68 @@ void ReadJoint(const UrdfSource& source, const urdf::Joint& joint, CarLink& link
   link.axis.normalize();
 }
 
-CarLink ToLink(const UrdfSource& source, const urdf::Link& from) {
+// What is in each mesh file; wheels share theirs.
+class MeshFiles {
+ public:
+  const std::vector<std::shared_ptr<const CarMesh>>& Parts(const std::filesystem::path& file) {
+    const auto [entry, is_new] = parts_.try_emplace(file);
+    if (is_new)
+      for (CarMesh& part : ReadMesh(file)) entry->second.push_back(std::make_shared<const CarMesh>(std::move(part)));
+    return entry->second;
+  }
+
+ private:
+  std::map<std::filesystem::path, std::vector<std::shared_ptr<const CarMesh>>> parts_;
+};
+
+// A mesh of several colours is as many shapes; a material in the URDF paints them all.
+void AddVisual(const UrdfSource& source, const urdf::Visual& visual, MeshFiles& meshes, CarLink& link) {
+  CarShape shape = ToShape(source, link.name, visual.geometry.get(), visual.origin);
+  shape.material = visual.material_name;
+  if (visual.material) {
+    const urdf::Color& color = visual.material->color;
+    shape.rgba = {color.r, color.g, color.b, color.a};
+  }
+  if (shape.kind != CarShape::Kind::kMesh) return link.visual.push_back(shape);
+  for (const auto& part : meshes.Parts(shape.mesh_file)) {
+    if (!visual.material && part->rgba) shape.rgba = *part->rgba;
+    shape.mesh = part;
+    link.visual.push_back(shape);
+  }
+}
+
+// What touches is a mesh's convex hull: it must have a volume.
+void AddCollision(const UrdfSource& source, const urdf::Collision& collision, MeshFiles& meshes, CarLink& link) {
+  CarShape shape = ToShape(source, link.name, collision.geometry.get(), collision.origin);
+  if (shape.kind == CarShape::Kind::kMesh) {
+    shape.mesh = std::make_shared<const CarMesh>(Joined(meshes.Parts(shape.mesh_file)));
+    if (IsFlat(*shape.mesh))
+      throw InputError(
+          source.Where(link.name),
+          fmt::format("link '{}': collision mesh {} is flat", link.name, shape.mesh_file.filename().string()),
+          "a solid");
+  }
+  link.collision.push_back(shape);
+}
+
+CarLink ToLink(const UrdfSource& source, const urdf::Link& from, MeshFiles& meshes) {
   CarLink link;
   link.name = from.name;
   if (from.parent_joint) ReadJoint(source, *from.parent_joint, link);
   if (from.inertial) ReadInertial(source, *from.inertial, link);
-  for (const auto& visual : from.visual_array) {
-    CarShape shape = ToShape(source, link.name, visual->geometry.get(), visual->origin);
-    shape.material = visual->material_name;
-    if (visual->material) {
-      const urdf::Color& color = visual->material->color;
-      shape.rgba = {color.r, color.g, color.b, color.a};
-    }
-    link.visual.push_back(shape);
-  }
-  for (const auto& collision : from.collision_array)
-    link.collision.push_back(ToShape(source, link.name, collision->geometry.get(), collision->origin));
+  for (const auto& visual : from.visual_array) AddVisual(source, *visual, meshes, link);
+  for (const auto& collision : from.collision_array) AddCollision(source, *collision, meshes, link);
   return link;
 }
 
 // Parents before children, siblings in the order of the file.
-void AppendTree(const UrdfSource& source, const urdf::Link& link, std::vector<CarLink>& links) {
-  links.push_back(ToLink(source, link));
+void AppendTree(const UrdfSource& source, const urdf::Link& link, MeshFiles& meshes, std::vector<CarLink>& links) {
+  links.push_back(ToLink(source, link, meshes));
   std::vector<urdf::LinkSharedPtr> children = link.child_links;
   std::stable_sort(children.begin(), children.end(), [&source](const auto& a, const auto& b) {
     return source.lines.at(a->name) < source.lines.at(b->name);
   });
-  for (const auto& child : children) AppendTree(source, *child, links);
+  for (const auto& child : children) AppendTree(source, *child, meshes, links);
 }
 
 }  // namespace
@@ -147,13 +201,13 @@ void AppendTree(const UrdfSource& source, const urdf::Link& link, std::vector<Ca
 CarDescription ReadCar(const std::filesystem::path& urdf) {
   const UrdfSource source = ReadUrdf(urdf);
   const urdf::ModelInterfaceSharedPtr model = ParseUrdf(source);
-  if (model->getRoot()->name != "base_link")
-    throw InputError(source.Where(model->getRoot()->name), "the root link", "base_link", model->getRoot()->name);
   CarDescription car;
   car.name = model->getName();
-  AppendTree(source, *model->getRoot(), car.links);
-  DeriveGeometry(source, car);
-  car.drivetrain = ReadDrivetrain(source);
+  MeshFiles meshes;
+  AppendTree(source, *model->getRoot(), meshes, car.links);
+  const CarMapping mapping = ReadMapping(urdf);
+  DeriveGeometry(source, mapping, car);
+  car.drivetrain = mapping.drivetrain ? *mapping.drivetrain : ReadDrivetrain(source);
   return car;
 }
 

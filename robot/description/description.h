@@ -10,13 +10,16 @@
 
 namespace merlin {
 
-// Throws InputError: file, line where the parser knows it, and what is missing or wrong (no base_link, missing mesh, a
-// wheel or frame that the car needs, a non-positive mass or dimension). Meshes resolve "package://<name>/x" and
-// relative paths against the URDF's own folder.
+// Any URDF of a car-like robot whose wheels, steering and sensors go by the rule's names (wheel_front_left_joint,
+// steer_front_left_joint, depth_camera_optical_frame, ...) or by a mapping beside it: see
+// robot/description/car_mapping.h. Throws InputError: file, line where the parser knows it, and what is missing or
+// wrong (missing mesh, a wheel or frame that the car needs, a non-positive mass or dimension). Meshes resolve
+// "package://<name>/x" and relative paths against the URDF's own folder.
 CarDescription ReadCar(const std::filesystem::path& urdf);
 
-// Throw InputError: unknown key (names the nearest), missing key, value out of range, values that contradict each other; all
-// faults at once, of the sheet and of its errors alike. Errors: the map under the key `errors`, the defaults for what it omits.
+// Throw InputError: unknown key (names the nearest), missing key, value out of range, values that contradict each
+// other; all faults at once, of the sheet and of its errors alike. Errors: the map under the key `errors`, the defaults
+// for what it omits.
 DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml);
 DepthCameraErrors ReadDepthCameraErrors(const std::filesystem::path& yaml);
 ColorCameraSheet ReadColorCameraSheet(const std::filesystem::path& yaml);

@@ -24,7 +24,8 @@ struct UrdfSource {
 // Throws InputError: not readable, not well-formed XML (with its line), no <robot>.
 UrdfSource ReadUrdf(const std::filesystem::path& path);
 
-// The model as urdfdom understands it. Throws InputError with urdfdom's reason; prints nothing.
+// The model as urdfdom understands it. Throws InputError with urdfdom's reason, and for what it lets pass: numbers that
+// are none, links in a cycle, which it drops, and a link that hangs on two joints. Prints nothing.
 urdf::ModelInterfaceSharedPtr ParseUrdf(const UrdfSource& source);
 
 }  // namespace merlin

@@ -3,8 +3,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,25 +16,33 @@
 
 namespace merlin {
 
+// Triangles of one colour, out of a mesh file; in metres, z up.
+struct CarMesh {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Eigen::Vector3i> triangles;     // three places in vertices each, counter-clockwise from outside
+  std::optional<std::array<float, 4>> rgba;   // where the file says it
+};
+
 struct CarShape {
   enum class Kind { kBox, kCylinder, kSphere, kMesh };
   Kind kind = Kind::kBox;
   Eigen::Vector3d size_m{0, 0, 0};  // box: full edges; cylinder: radius, length (along z), 0; sphere: radius, 0, 0; mesh: scale
-  std::filesystem::path mesh;       // absolute, exists
+  std::filesystem::path mesh_file;  // absolute; what it holds:
+  std::shared_ptr<const CarMesh> mesh;
   Pose T_link_shape = Pose::Identity();
   std::string material;             // a name in materials.yaml; may be empty
   std::array<float, 4> rgba{0.5f, 0.5f, 0.5f, 1.0f};
 };
 
 struct CarLink {
-  enum class Joint { kFixed, kRevolute, kContinuous };
+  enum class Joint { kFixed, kRevolute, kContinuous, kPrismatic };
   std::string name;
   std::string parent;                          // empty for the root, base_link
   std::string joint_name;
   Joint joint = Joint::kFixed;
   Pose T_parent_link = Pose::Identity();       // at joint angle 0
   Eigen::Vector3d axis{1, 0, 0};               // of the joint, in the link's frame
-  double joint_min_rad = 0.0, joint_max_rad = 0.0;
+  double joint_min_rad = 0.0, joint_max_rad = 0.0;  // of a revolute joint
   double mass_kg = 0.0;                        // 0: a frame only
   Pose T_link_inertial = Pose::Identity();
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  // about the inertial frame
@@ -51,14 +63,26 @@ struct Drivetrain {
   double tyre_friction = 0.0;
 };
 
+// A driven wheel. Its joint's axis points to the left: positive turns roll the car forwards.
+struct CarWheel {
+  std::size_t link = 0;                        // its place in links
+  Pose T_link_tyre = Pose::Identity();         // the tyre's middle, z along the axle
+  double width_m = 0.0;                        // of the tyre
+};
+
+// The car's parts go by their roles here; no user needs to know how its URDF calls them. Joints without a role do not
+// move.
 struct CarDescription {
   std::string name;
-  std::vector<CarLink> links;  // parents before children; [0] is base_link: on the ground below the rear axle's middle
+  std::vector<CarLink> links;  // parents before children; [0] is the base: on the ground below the rear axle's middle
+  std::array<CarWheel, 4> wheels{};        // front left, front right, rear left, rear right
+  std::array<std::size_t, 2> knuckles{};   // places in links: what steers the front wheels, left, right; positive to the left
   // Derived from the links, so that they cannot disagree with them:
   double wheelbase_m = 0.0;
-  double track_m = 0.0;
+  double track_m = 0.0;           // between the wheels' middles, mean of front and rear
+  double steering_track_m = 0.0;  // between the two steering axes; they may stand beside the wheels' middles
   double wheel_radius_m = 0.0;
-  double steering_max_rad = 0.0;
+  double steering_max_rad = 0.0;  // of the virtual wheel midway between the front ones, as the knuckles' limits allow
   Drivetrain drivetrain;
   Pose T_base_depth = Pose::Identity();  // optical frames
   Pose T_base_color = Pose::Identity();

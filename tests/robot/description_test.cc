@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <regex>
 #include <set>
 
 #include "robot/types/error.h"
+#include "tests/robot/mesh_text.h"
 
 namespace merlin {
 namespace {
@@ -56,6 +59,7 @@ class Description : public testing::Test {
   void SetUp() override {
     std::string pattern = (fs::temp_directory_path() / "merlin_test_XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
+    fs::create_directory_symlink(Model("merlin/meshes"), folder_ / "meshes");
   }
   void TearDown() override { fs::remove_all(folder_); }
   fs::path File(const std::string& name, const std::string& text) const {
@@ -131,21 +135,25 @@ TEST_F(Description, ParentsComeBeforeChildren) {
     EXPECT_TRUE(link.parent.empty() || seen.contains(link.parent)) << link.name;
     seen.insert(link.name);
   }
-  EXPECT_EQ(Link(car, "front_left_wheel").parent, "front_left_knuckle");
-  EXPECT_EQ(Link(car, "front_left_wheel").joint, CarLink::Joint::kContinuous);
-  EXPECT_EQ(Link(car, "front_left_knuckle").joint, CarLink::Joint::kRevolute);
+  EXPECT_EQ(Link(car, "wheel_front_left").parent, "knuckle_front_left");
+  EXPECT_EQ(Link(car, "wheel_front_left").joint, CarLink::Joint::kContinuous);
+  EXPECT_EQ(Link(car, "knuckle_front_left").joint, CarLink::Joint::kRevolute);
   EXPECT_EQ(Link(car, "pc").joint, CarLink::Joint::kFixed);
 }
 
 TEST_F(Description, ShapesHaveSizeColourAndMaterial) {
   const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
-  const CarLink& wheel = Link(car, "rear_right_wheel");
+  const CarLink& wheel = Link(car, "wheel_rear_right");
   ASSERT_EQ(wheel.collision.size(), 1u);
   EXPECT_EQ(wheel.collision[0].kind, CarShape::Kind::kCylinder);
   EXPECT_EQ(wheel.collision[0].size_m, Eigen::Vector3d(0.055, 0.04, 0.0));
   EXPECT_LT((wheel.collision[0].T_link_shape.linear().col(2).cwiseAbs() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
-  EXPECT_EQ(wheel.visual[0].material, "car_rubber");
-  EXPECT_EQ(wheel.visual[0].rgba, (std::array<float, 4>{0.05f, 0.05f, 0.05f, 1.0f}));
+  const CarShape& battery = Link(car, "batteries").visual[0];
+  EXPECT_EQ(battery.kind, CarShape::Kind::kBox);
+  EXPECT_EQ(battery.material, "car_battery");
+  EXPECT_EQ(battery.rgba, (std::array<float, 4>{0.10f, 0.16f, 0.45f, 1.0f}));
+  EXPECT_EQ(wheel.visual[0].rgba, (std::array<float, 4>{0.05f, 0.05f, 0.05f, 1.0f}));  // the mesh's own
+  EXPECT_EQ(Link(car, "camera_mast").visual[0].material, "car_aluminium");             // painted by the URDF
 }
 
 TEST_F(Description, DepthCameraLooksAheadLevel) {
@@ -174,8 +182,8 @@ TEST_F(Description, CompassStandsOnItsMastInTheBodysAxes) {
   const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
   EXPECT_EQ(car.T_base_compass.linear(), Eigen::Matrix3d::Identity());
   const CarLink& mast = Link(car, "compass_mast");
-  EXPECT_NEAR(mast.visual[0].size_m.y(), 0.20, 1e-12);
-  const double top_m = mast.T_parent_link.translation().z() + mast.visual[0].T_link_shape.translation().z() + 0.10;
+  EXPECT_NEAR(mast.collision[0].size_m.y(), 0.20, 1e-12);
+  const double top_m = mast.T_parent_link.translation().z() + mast.collision[0].T_link_shape.translation().z() + 0.10;
   EXPECT_NEAR(car.T_base_compass.translation().z(), top_m, 0.02);
 }
 
@@ -208,12 +216,11 @@ TEST_F(Description, NamesTheLineOfBrokenXml) {
 }
 
 TEST_F(Description, RefusesACarWithoutWhatItNeeds) {
-  ExpectSays(CarError("<robot name=\"x\"><link name=\"body\"/></robot>"), {"car.urdf:1", "base_link", "body"});
-  ExpectSays(CarError("<robot name=\"x\"><link name=\"base_link\"/></robot>"), {"front_left_wheel"});
+  ExpectSays(CarError("<robot name=\"x\"><link name=\"base_link\"/></robot>"),
+             {"car.urdf", "needs a joint", "wheel_front_left_joint"});
   for (const std::string frame : {"depth_camera_optical_frame", "color_camera_optical_frame", "compass_frame"}) {
     std::string renamed = merlin_;
-    for (std::size_t at; (at = renamed.find("\"" + frame + "\"")) != std::string::npos;)
-      renamed.replace(at + 1, 1, "X");
+    for (std::size_t at; (at = renamed.find("\"" + frame + "\"")) != std::string::npos;) renamed[at + 1] = 'X';
     ExpectSays(CarError(renamed), {"needs a link", frame});
   }
   ExpectSays(CarError(Replaced(merlin_, "<drivetrain", "<powertrain")), {"<drivetrain"});
@@ -226,26 +233,62 @@ TEST_F(Description, NamesTheLineOfAWrongNumber) {
     const std::string text = Replaced(merlin_, from, to);
     ExpectSays(CarError(text), {"car.urdf:" + std::to_string(LineOf(text, element)) + ":", what});
   };
-  const std::string chassis = "<link name=\"chassis\">", wheel = "<link name=\"front_left_wheel\">";
-  for (const std::string mass : {"0", "-1", "nan", "inf"})
+  const std::string chassis = "<link name=\"chassis\">", mass_line = "<mass value=\"",
+                    wheel = "<link name=\"wheel_front_left\">";
+  for (const std::string mass : {"0", "-1"})
     expect("<mass value=\"1.68\"/>", "<mass value=\"" + mass + "\"/>", chassis, "mass");
+  for (const std::string mass : {"nan", "inf", "heavy", "1 2", ""})
+    expect("<mass value=\"1.68\"/>", mass_line + mass + "\"/>", mass_line, "<mass> 'value'; expected a finite number");
   expect("ixx=\"0.005404\"", "ixx=\"0\"", chassis, "inertia");
   expect("ixx=\"0.005404\"", "ixx=\"9\"", chassis, "inertia");
-  expect("size=\"0.35 0.19 0.006\"", "size=\"0.35 0 0.006\"", chassis, "size");
+  expect("size=\"0.35 0.19 0.05\"", "size=\"0.35 0 0.05\"", chassis, "size");
   expect("radius=\"0.055\"", "radius=\"-0.055\"", wheel, "size");
   expect("gear=\"10\"", "gear=\"0\"", "<drivetrain", "'gear'");
   expect("gear=\"10\"", "gear=\"ten\"", "<drivetrain", "'gear'");
   expect("turn=\"512\"", "turn=\"511.5\"", "<drivetrain", "whole number");
-  expect("<joint name=\"rear_left_wheel_joint\" type=\"continuous\">",
-         "<joint name=\"rear_left_wheel_joint\" type=\"floating\">", "<joint name=\"rear_left_wheel_joint\"", "type");
-  expect("<joint name=\"rear_left_wheel_joint\" type=\"continuous\">",
-         "<joint name=\"rear_left_wheel_joint\" type=\"fixed\">", "<joint name=\"rear_left_wheel_joint\"", "turn");
+  expect("<joint name=\"wheel_rear_left_joint\" type=\"continuous\">",
+         "<joint name=\"wheel_rear_left_joint\" type=\"floating\">", "<joint name=\"wheel_rear_left_joint\"", "type");
+  expect("<joint name=\"wheel_rear_left_joint\" type=\"continuous\">",
+         "<joint name=\"wheel_rear_left_joint\" type=\"fixed\">", "<joint name=\"wheel_rear_left_joint\"", "turn");
 }
 
-TEST_F(Description, RefusesWheelsThatDisagree) {
-  ExpectSays(CarError(Replaced(merlin_, "xyz=\"0 -0.13 0.055\"", "xyz=\"0 -0.14 0.055\"")),
-             {"rear_right_wheel", "centre"});
-  ExpectSays(CarError(Replaced(merlin_, "xyz=\"0 0.13 0.055\"", "xyz=\"0.1 0.13 0.055\"")), {"rear", "base_link"});
+TEST_F(Description, RefusesWheelsThatMakeNoCar) {
+  const auto expect = [this](const std::string& from, const std::string& to, const std::vector<std::string>& says) {
+    ExpectSays(CarError(Replaced(merlin_, from, to)), says);
+  };
+  const std::string rear_left = "xyz=\"0 0.13 0.055\"", rear_right = "xyz=\"0 -0.13 0.055\"";
+  expect(rear_right, "xyz=\"0 -0.14 0.055\"", {"car.urdf:", "two axles of one car"});  // one farther out
+  expect(rear_left, "xyz=\"0.1 0.13 0.055\"", {"two axles of one car"});               // one farther ahead
+  expect(rear_left, "xyz=\"0 0.13 0.065\"", {"two axles of one car"});                 // one farther up
+  expect(rear_left, "xyz=\"0 -0.13 0.055\"", {"stand in one another"});
+  expect(rear_left, "xyz=\"nan 0.13 0.055\"", {"car.urdf"});
+  expect("<cylinder radius=\"0.055\" length=\"0.04\"/></geometry>\n    </collision>",
+         "<cylinder radius=\"0.05\" length=\"0.04\"/></geometry>\n    </collision>",
+         {"car.urdf:", "wheel_front_right", "radius", "0.05 m"});
+}
+
+// Left and right exchanged in the roles would turn the car over; so would front and rear.
+TEST_F(Description, RefusesWheelsOnTheWrongSide) {
+  std::string text = merlin_;
+  text = Replaced(text, "<child link=\"wheel_rear_left\"/><origin xyz=\"0 0.13",
+                  "<child link=\"wheel_rear_left\"/><origin xyz=\"0 -0.13");
+  text = Replaced(text, "<child link=\"wheel_rear_right\"/><origin xyz=\"0 -0.13",
+                  "<child link=\"wheel_rear_right\"/><origin xyz=\"0 0.13");
+  ExpectSays(CarError(text), {"do not stand as their roles say"});
+}
+
+TEST_F(Description, ReadsTheMiddleAngleFromTheKnucklesLimits) {
+  // Another limit of one knuckle: the inner angle of 20 deg, or the outer one on its other side, binds the whole car.
+  const double inner_rad = std::atan(1.0 / (1.0 / std::tan(20.0 * std::numbers::pi / 180.0) - 0.13 / 0.33));
+  const double outer_rad = std::atan(1.0 / (1.0 / std::tan(20.0 * std::numbers::pi / 180.0) + 0.13 / 0.33));
+  const std::string left = "lower=\"-0.5190064495436374\" upper=\"0.5190064495436374\"";
+  for (const std::string& limits :
+       std::vector<std::string>{"lower=\"-0.5190064495436374\" upper=\"" + std::to_string(inner_rad) + "\"",
+                                "lower=\"" + std::to_string(-outer_rad) + "\" upper=\"0.5190064495436374\""}) {
+    const CarDescription car = ReadCar(File("car.urdf", Replaced(merlin_, left, limits)));
+    EXPECT_NEAR(car.steering_max_rad, 20.0 * std::numbers::pi / 180.0, 1e-6) << limits;
+  }
+  ExpectSays(CarError(Replaced(merlin_, left, "lower=\"0\" upper=\"0.5\"")), {"car.urdf:", "steering limits"});
 }
 
 TEST_F(Description, RefusesWhatUrdfdomRefusesAndSaysWhy) {
@@ -258,20 +301,123 @@ TEST_F(Description, RefusesWhatUrdfdomRefusesAndSaysWhy) {
 }
 
 TEST_F(Description, ResolvesMeshesAgainstTheUrdfsFolder) {
-  const std::string box = "<box size=\"0.35 0.19 0.006\"/>";
-  File("body.stl", "mesh");
+  const std::string box = "<mesh filename=\"meshes/chassis.dae\"/>";
+  File("body.stl", mesh_text::StlText({}));
   for (const std::string name : {"body.stl", "package://merlin/body.stl", "./body.stl"}) {
     const fs::path urdf = File("car.urdf", Replaced(merlin_, box, "<mesh filename=\"" + name + "\" scale=\"1 2 3\"/>"));
     const CarDescription car = ReadCar(urdf);
     const CarShape& shape = Link(car, "chassis").visual[0];
     EXPECT_EQ(shape.kind, CarShape::Kind::kMesh);
-    EXPECT_TRUE(shape.mesh.is_absolute());
-    EXPECT_TRUE(fs::equivalent(shape.mesh, folder_ / "body.stl"));
+    EXPECT_TRUE(shape.mesh_file.is_absolute());
+    EXPECT_TRUE(fs::equivalent(shape.mesh_file, folder_ / "body.stl"));
     EXPECT_EQ(shape.size_m, Eigen::Vector3d(1, 2, 3));
   }
   for (const std::string name : {"none.stl", "package://merlin/none.stl", "package://merlin", "/nowhere/none.stl"}) {
     const std::string text = Replaced(merlin_, box, "<mesh filename=\"" + name + "\"/>");
     ExpectSays(CarError(text), {"car.urdf:" + std::to_string(LineOf(text, "<link name=\"chassis\">")), "missing mesh"});
+  }
+}
+
+TEST_F(Description, RefusesLinksThatHangInACircle) {
+  const std::string end = "</robot>";
+  const auto joint = [](const std::string& name, const std::string& parent, const std::string& child) {
+    return "<joint name=\"" + name + "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+           "\"/></joint>\n";
+  };
+  const std::string two = "<link name=\"a\"/><link name=\"b\"/>\n";
+  const std::string circle = Replaced(merlin_, end, two + joint("ab", "a", "b") + joint("ba", "b", "a") + end);
+  ExpectSays(CarError(circle),
+             {"car.urdf:" + std::to_string(LineOf(circle, "<joint name=\"ba\"")), "'a' hangs below itself"});
+  ExpectSays(CarError(Replaced(merlin_, end, two + joint("aa", "a", "a") + end)), {"'a' hangs below itself"});
+  ExpectSays(CarError(Replaced(merlin_, end, joint("again", "pc", "batteries") + end)), {"'batteries' already hangs"});
+  ExpectSays(CarError(Replaced(merlin_, end, two + joint("ab", "a", "b") + end)), {"car.urdf", "root"});  // two trees
+}
+
+TEST_F(Description, RefusesThreeWheelsAndNoWheels) {
+  ExpectSays(CarError(Replaced(merlin_, "wheel_rear_right_joint", "spare_wheel")),
+             {"car.urdf", "needs a joint 'wheel_rear_right_joint'", "car.mapping.yaml", "did you mean"});
+  ExpectSays(CarError("<robot name=\"x\"><link name=\"base_link\"/></robot>"),
+             {"needs a joint 'wheel_front_left_joint'"});
+}
+
+// Whatever number of the file is none: one sentence that names the file.
+TEST_F(Description, RefusesEveryNumberThatIsNone) {
+  const std::string text = std::regex_replace(merlin_, std::regex("<!--[^]*?-->"), "");
+  const std::regex number("[ \"]([-+0-9.e]*[0-9])(?=[ \"])");
+  const std::size_t start = text.find("<drivetrain");
+  int numbers = 0;
+  for (std::sregex_iterator match(text.begin() + static_cast<std::ptrdiff_t>(start), text.end(), number), end;
+       match != end; ++match)
+    for (const std::string bad : {"nan", "x"}) {
+      std::string changed = text;
+      changed.replace(start + static_cast<std::size_t>(match->position(1)), static_cast<std::size_t>(match->length(1)),
+                      bad);
+      const std::string error = CarError(changed);
+      EXPECT_NE(error.find("car.urdf"), std::string::npos)
+          << bad << " for number " << numbers << ": "
+          << text.substr(start + static_cast<std::size_t>(match->position(1)) - 60, 80);
+      EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+      ++numbers;
+    }
+  EXPECT_GT(numbers, 600);
+}
+
+TEST_F(Description, NamesAMeshThatIsNone) {
+  File("body.dae", "no mesh");
+  ExpectSays(CarError(Replaced(merlin_, "meshes/chassis.dae", "body.dae")), {"body.dae: not a mesh"});
+  File("flat.stl", mesh_text::StlText({.z = 0.0}));
+  ExpectSays(CarError(Replaced(merlin_, "<collision><geometry><box size=\"0.12 0.15 0.04\"/></geometry></collision>",
+                               "<collision><geometry><mesh filename=\"flat.stl\"/></geometry></collision>")),
+             {"car.urdf:", "link 'pc'", "flat.stl is flat"});
+}
+
+// The files are small, few triangles, and what their script makes.
+TEST_F(Description, MeshesAreLightAndMadeByTheirScript) {
+  const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
+  std::size_t triangles = 0;
+  std::set<std::string> endings;
+  for (const CarLink& link : car.links)
+    for (const CarShape& shape : link.visual)
+      if (shape.mesh) triangles += shape.mesh->triangles.size(), endings.insert(shape.mesh_file.extension().string());
+  EXPECT_LT(triangles, 15100u);
+  EXPECT_EQ(endings, (std::set<std::string>{".dae", ".glb", ".obj", ".stl"}));
+  const fs::path made = folder_ / "made";
+  fs::create_directory(made);
+  fs::copy_file(Model("merlin/meshes/make.py"), made / "make.py");
+  ASSERT_EQ(std::system(("python3 " + (made / "make.py").string()).c_str()), 0);
+  std::uintmax_t bytes = 0;
+  for (const auto& file : fs::directory_iterator(Model("merlin/meshes"))) {
+    EXPECT_EQ(Text(file.path()), Text(made / file.path().filename())) << file.path();
+    bytes += file.file_size();
+  }
+  EXPECT_LT(bytes, 1'000'000u);
+}
+
+// What is seen is as large as what touches.
+TEST_F(Description, MeshesFitTheShapesThatTouch) {
+  const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
+  const auto extent = [](const CarLink& link) {
+    Eigen::AlignedBox3d box;
+    for (const CarShape& shape : link.visual)
+      if (shape.mesh)
+        for (const Eigen::Vector3f& vertex : shape.mesh->vertices)
+          box.extend(shape.T_link_shape * vertex.cast<double>());
+    return box;
+  };
+  for (const CarWheel& wheel : car.wheels) {
+    const Eigen::AlignedBox3d box = extent(car.links[wheel.link]);
+    EXPECT_NEAR(box.max().z(), car.wheel_radius_m, 1e-4);
+    EXPECT_NEAR(box.sizes().x(), 2.0 * car.wheel_radius_m, 1e-3);  // a polygon's corner or edge
+    EXPECT_NEAR(box.sizes().y(), wheel.width_m, 1e-4);
+  }
+  const Eigen::AlignedBox3d chassis = extent(Link(car, "chassis"));
+  EXPECT_NEAR(chassis.min().x(), -0.09, 1e-3);
+  EXPECT_NEAR(chassis.max().x(), 0.45, 1e-3);
+  EXPECT_NEAR(chassis.max().y(), 0.15, 1e-3);
+  EXPECT_NEAR(chassis.min().y(), -0.15, 1e-3);
+  for (const char* camera : {"depth_camera", "color_camera"}) {
+    const CarLink& link = Link(car, camera);
+    EXPECT_LT((extent(link).sizes() - link.collision[0].size_m).cwiseAbs().maxCoeff(), 1.1e-3) << camera;
   }
 }
 

@@ -16,8 +16,9 @@ namespace merlin::sim {
 
 constexpr char kPlane[] = R"(<geom name="floor" type="plane" size="0 0 1"/>)";
 
-inline CarDescription Merlin() {
-  return ReadCar(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/merlin/merlin.urdf");
+inline const CarDescription& Merlin() {
+  static const CarDescription car = ReadCar(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/merlin/merlin.urdf");
+  return car;
 }
 
 // A file in a folder of its own, gone with the object.

@@ -131,8 +131,8 @@ TEST(Drivetrain, FrontWheelsFollowAckermann) {
     EXPECT_NEAR(middle_rad, degrees * kDegree, 0.1 * kDegree);
     const double left_rad = std::atan(1.0 / (1.0 / std::tan(middle_rad) - offset));
     const double right_rad = std::atan(1.0 / (1.0 / std::tan(middle_rad) + offset));
-    EXPECT_NEAR(HingeAngle_rad(*world, "front_left_steering"), left_rad, 0.02 * kDegree);
-    EXPECT_NEAR(HingeAngle_rad(*world, "front_right_steering"), right_rad, 0.02 * kDegree);
+    EXPECT_NEAR(HingeAngle_rad(*world, "steer_front_left_joint"), left_rad, 0.02 * kDegree);
+    EXPECT_NEAR(HingeAngle_rad(*world, "steer_front_right_joint"), right_rad, 0.02 * kDegree);
   }
 }
 

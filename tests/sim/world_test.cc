@@ -116,7 +116,7 @@ TEST(World, AWheelOnWhatIsNotFloorIsATouch) {
   Send(*world, 0.5, 0.0);
   StepFor(*world, 2.0);  // the front wheels stand on it
   ASSERT_FALSE(world->CarTouches().empty());
-  EXPECT_TRUE(world->CarTouches()[0].car_geom.starts_with("front_"));
+  EXPECT_TRUE(world->CarTouches()[0].car_geom.starts_with("wheel_front_"));
   EXPECT_EQ(world->CarTouches()[0].other_geom, "step");
   EXPECT_GT(world->T_world_base().translation().x(), 0.8);
 }
@@ -125,8 +125,8 @@ TEST(World, KnowsTheCarsGeoms) {
   const auto world = EmptyWorld();
   const auto id = [&](const char* name) { return mj_name2id(world->model(), mjOBJ_GEOM, name); };
   EXPECT_FALSE(world->IsCarGeom(id("floor")));
-  EXPECT_TRUE(world->IsCarGeom(id("rear_left_wheel_visual_0")));
-  EXPECT_TRUE(world->IsCarGeom(id("front_left_wheel_collision_0")));
+  EXPECT_TRUE(world->IsCarGeom(id("wheel_rear_left_visual_0")));
+  EXPECT_TRUE(world->IsCarGeom(id("wheel_front_left_collision_0")));
   EXPECT_TRUE(world->IsCarGeom(id("depth_camera_visual_0")));
 }
 
@@ -214,12 +214,12 @@ TEST(World, RoomsOwnDefaultsDoNotReachTheCar) {
     <default><geom contype="0" margin="1" friction="0.01"/><joint damping="9" armature="9"/><general gear="5"/></default>)"
                                             "<statistic extent=\"3\"/>"));
   const mjModel* m = world->model();
-  const int base = mj_name2id(m, mjOBJ_BODY, "base_link"), steering = mj_name2id(m, mjOBJ_JOINT, "steering");
+  const int base = mj_name2id(m, mjOBJ_BODY, "base_link"), steering = mj_name2id(m, mjOBJ_JOINT, "virtual_front_wheel_joint");
   EXPECT_NEAR(m->body_subtreemass[base], 6.5, 1e-9);
   EXPECT_NEAR(m->jnt_range[2 * steering + 1], Merlin().steering_max_rad, 1e-12);
   EXPECT_NEAR(EmptyWorld()->model()->jnt_range[2 * steering + 1], Merlin().steering_max_rad, 1e-12);  // degrees there
   EXPECT_EQ(m->dof_damping[m->jnt_dofadr[steering]], 0.0);
-  EXPECT_EQ(m->geom_margin[mj_name2id(m, mjOBJ_GEOM, "front_left_wheel_collision_0")], 0.0);
+  EXPECT_EQ(m->geom_margin[mj_name2id(m, mjOBJ_GEOM, "wheel_front_left_collision_0")], 0.0);
 }
 
 TEST(World, RefusesAStartInAWall) {

@@ -1,5 +1,6 @@
 #include "tools/cli/licenses.h"
 
+#include <assimp/version.h>
 #include <fmt/core.h>
 #include <gnu/libc-version.h>
 #include <openssl/crypto.h>
@@ -49,6 +50,7 @@ std::vector<LinkedWork> LinkedWorks() {
       {"OpenCV (core, imgproc, imgcodecs, videoio)", CV_VERSION, "Apache-2.0", "shared libraries"},
       {"FFmpeg", "", "GPL-2.0-or-later", "shared libraries, through OpenCV's videoio; as Debian builds it"},
       {"GStreamer", "", "LGPL-2.1-or-later", "shared libraries, through OpenCV's videoio"},
+      {"assimp", fmt::format("{}.{}", aiGetVersionMajor(), aiGetVersionMinor()), "BSD-3-Clause", "shared library"},
       {"urdfdom", "", "BSD-3-Clause", "shared library and headers"},
       {"TinyXML", Dotted(TIXML_MAJOR_VERSION, TIXML_MINOR_VERSION, TIXML_PATCH_VERSION), "Zlib",
        "shared library, through urdfdom"},

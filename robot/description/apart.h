@@ -1,0 +1,22 @@
+// Work in a process of its own, for code that foreign bytes can bring down.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace merlin {
+
+struct ApartResult {
+  bool finished = false;  // false: it crashed, or took more processor time than it may
+  std::string bytes;      // what the work returned
+};
+
+constexpr unsigned kApartCpuMax_s = 5;
+constexpr unsigned long kApartMemoryMax_bytes =
+    1ul << 30;  // allocating more throws std::bad_alloc there; not under sanitizers
+
+// Runs the work in a forked child that prints nothing and leaves no trace but the bytes it returns; the work must not
+// throw. Throws MachineError if no process can be made.
+ApartResult RunApart(const std::function<std::string()>& work);
+
+}  // namespace merlin

@@ -1,0 +1,52 @@
+// How a URDF names what makes it a car. A URDF of others brings a small YAML file beside it, <its stem>.mapping.yaml:
+//
+//   wheel_front_left_joint: axle_fl         # the role's name: the joint's name there; the four driven wheels ...
+//   steer_front_left_joint: kingpin_l       # ... and what steers the two front ones
+//   depth_camera_optical_frame: tof_lens    # a link with z ahead, x right, y down; or
+//   color_camera_frame: webcam              # ... without "optical": x ahead, y left, z up
+//   compass_frame: imu_link
+//   wheel_radius_m: 0.1                     # optional, and wheel_width_m: where the wheels' shapes do not say it
+//   drivetrain: {gear: 10, ...}             # as the element <drivetrain> of models/merlin/merlin.urdf
+//
+// A role that the file leaves out has the name of the rule. A URDF that follows the rule and has a <drivetrain> needs
+// no file.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "robot/types/car.h"
+
+namespace merlin {
+
+// A name in the URDF, and the line of the mapping that chose it; empty if the name is the rule's.
+struct RoleName {
+  std::string role;
+  std::string name;
+  std::string where;
+};
+
+struct CarMapping {
+  std::array<RoleName, 4> wheel_joints{{{"wheel_front_left_joint", "wheel_front_left_joint", ""},
+                                        {"wheel_front_right_joint", "wheel_front_right_joint", ""},
+                                        {"wheel_rear_left_joint", "wheel_rear_left_joint", ""},
+                                        {"wheel_rear_right_joint", "wheel_rear_right_joint", ""}}};
+  std::array<RoleName, 2> steer_joints{{{"steer_front_left_joint", "steer_front_left_joint", ""},
+                                        {"steer_front_right_joint", "steer_front_right_joint", ""}}};
+  // Cameras: role "..._optical_frame", or "..._frame" for a link with the body's axes.
+  RoleName depth_camera{"depth_camera_optical_frame", "depth_camera_optical_frame", ""};
+  RoleName color_camera{"color_camera_optical_frame", "color_camera_optical_frame", ""};
+  RoleName compass{"compass_frame", "compass_frame", ""};
+  std::optional<double> wheel_radius_m, wheel_width_m;
+  std::optional<Drivetrain> drivetrain;
+};
+
+std::filesystem::path MappingFile(const std::filesystem::path& urdf);
+
+// The rule where there is no such file. Throws InputError with file and line: not YAML, a key that is unknown (names
+// the nearest) or given twice, a value that is no name or no positive number.
+CarMapping ReadMapping(const std::filesystem::path& urdf);
+
+}  // namespace merlin
