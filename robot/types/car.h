@@ -59,6 +59,7 @@ struct CarDescription {
   double track_m = 0.0;
   double wheel_radius_m = 0.0;
   double steering_max_rad = 0.0;
+  double steering_offset_rad = 0.0;  // of the wheels from what the servo reports; only a calibration knows it
   Drivetrain drivetrain;
   Pose T_base_depth = Pose::Identity();  // optical frames
   Pose T_base_color = Pose::Identity();
