@@ -31,7 +31,10 @@ Pilot::Pilot(const CarDescription& car, const Task& task, const PilotConfig& con
     : car_(car), task_(task), config_(config), avoid_(FootprintOf(car), config.avoid) {}
 
 DriveCommand Pilot::Command(double speed_m_s, double steering_rad) const {
-  return {.speed_m_s = speed_m_s, .steering_rad = steering_rad, .valid_for = FromSeconds(config_.command_valid_s)};
+  // The servo is told what it will report, the wheels do what is meant.
+  return {.speed_m_s = speed_m_s,
+          .steering_rad = steering_rad - car_.steering_offset_rad,
+          .valid_for = FromSeconds(config_.command_valid_s)};
 }
 
 void Pilot::CountLaps(const Pose& T_map_base) {

@@ -19,6 +19,7 @@ namespace merlin {
 struct PerceptionConfig {
   DepthFilterConfig filter;
   IntegrationConfig integration;
+  OdometryConfig odometry;
   HeadingConfig heading;
   double color_age_max_s = 0.3;  // [0, 10] older pictures colour no points
 };
@@ -27,6 +28,7 @@ template <class Visitor>
 void Visit(Visitor& v, PerceptionConfig& c) {
   v("filter", c.filter);
   v("integration", c.integration);
+  v("odometry", c.odometry);
   v("heading", c.heading);
   v("color_age_max_s", c.color_age_max_s, {0.0, 10.0});
 }

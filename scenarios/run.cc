@@ -14,6 +14,7 @@
 #include "robot/twin/twin.h"
 #include "robot/types/error.h"
 #include "robot/types/nearest_name.h"
+#include "scenarios/calibration.h"
 #include "scenarios/drive_loop.h"
 #include "scenarios/judge_run.h"
 #include "scenarios/judge/output_folder.h"
@@ -51,6 +52,7 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   twin.world = {RoomFile(scenario.room), ReadCar(CarFile(scenario.car.model)), FromXyYaw(start.x_m, start.y_m, start.yaw_rad),
                 ObstaclesOf(scenario), scenario.curtain == "closed"};
   twin.materials = sim::ReadMaterials(Home() / "models/materials.yaml");
+  twin.world.drivetrain = scenario.car.drivetrain;
   twin.seed = scenario.seed;
   const std::filesystem::path depth_file = DepthCameraFile(sensors.depth.camera);
   twin.depth = {ReadDepthCameraSheet(depth_file), ReadDepthCameraErrors(depth_file), SettingsOf(sensors.depth),
@@ -72,6 +74,12 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   twin.end = FromSeconds(scenario.duration_s);
   twin.threads = options.threads;
   return twin;
+}
+
+// The car as the stack knows it: its description, and what a calibration found better.
+CarDescription BelievedCar(const CarChoice& choice) {
+  const CarDescription car = ReadCar(CarFile(choice.model));
+  return choice.calibration.empty() ? car : Calibrated(car, ReadCalibration(choice.calibration));
 }
 
 // A check of the map against a plan needs a plan.
@@ -134,6 +142,7 @@ RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) 
   const auto begin = WallClock::now();
   const Scenario& scenario = options.scenario;
   RunReport report;
+  const CarDescription car = BelievedCar(scenario.car);
   const std::unique_ptr<Twin> twin = MakeTwin(TwinOptionsOf(scenario, options), scenario, report.note);
   RequirePlan(options, twin->world());
   OutputFolder folder(options.out);
@@ -142,8 +151,7 @@ RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) 
 
   Truth truth(scenario, twin->world());
   twin->OnStep([&truth](sim::World& world) { truth.Watch(world); });
-  DriveLoop loop(twin->robot(), ReadCar(CarFile(scenario.car.model)), scenario.perception, scenario.slam, scenario.task,
-                 scenario.pilot);
+  DriveLoop loop(twin->robot(), car, scenario.perception, scenario.slam, scenario.task, scenario.pilot);
   Evidence evidence;
   const double setup_s = SecondsSince(begin);
   const auto first_step = WallClock::now();

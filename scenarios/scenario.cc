@@ -73,6 +73,7 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
   };
   anchor("room", scenario.room);
   anchor("car.model", scenario.car.model);
+  anchor("car.calibration", scenario.car.calibration);
   anchor("sensors.depth.camera", scenario.sensors.depth.camera);
   if (scenario.sensors.color) anchor("sensors.color.camera", scenario.sensors.color->camera);
   if (!root["room"].IsDefined()) faults.push_back(file.string() + ": room: missing; which room to drive in");

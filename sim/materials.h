@@ -1,5 +1,5 @@
-// Optical properties by material name (models/materials.yaml), all in the near infrared (870 nm). They are measured or
-// listed per material, never derived from a visible colour.
+// What surfaces are, by material name (models/materials.yaml): optical properties, all in the near infrared (870 nm),
+// measured or listed per material and never derived from a visible colour, and how they hold a tyre.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -18,6 +18,7 @@ struct Material {
                                     // faces, [0, 1]; 0: no glass
   double retro_gain = 1.0;          // times a Lambertian surface's brightness, seen from the lamp, [1, 10000]:
                                     // retro-reflectors 100-1000
+  double grip = 1.0;                // of a tyre on it: its friction there over the car's tyre_friction, [0.01, 2]
 };
 
 struct Materials {

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <span>
 #include <stdexcept>
 
 #include "robot/types/error.h"
 #include "sim/car_body.h"
+#include "sim/drivetrain.h"
 #include "sim/room.h"
 #include "sim/spec.h"
+#include "sim/surface.h"
+#include "sim/true_car.h"
 
 namespace merlin::sim {
 namespace {
@@ -34,15 +38,28 @@ void SetOptions(mjSpec* spec) {
   spec->compiler.discardvisual = 0;
 }
 
+void RefuseFaults(const DrivetrainConfig& config) {
+  const std::vector<Fault> faults = Validate(config);
+  if (faults.empty()) return;
+  std::string all;
+  for (const Fault& fault : faults)
+    all += fmt::format("{}drivetrain.{}: expected a number {}, got {}", all.empty() ? "" : "\n", fault.field, fault.rule,
+                       fault.value);
+  throw InputError(all);
+}
+
 std::string ObstacleName(const std::string& name) { return "obstacle_" + name; }
 
 }  // namespace
 
 World::World(const WorldOptions& options) {
+  RefuseFaults(options.drivetrain);
+  const DrivetrainConfig drivetrain = options.drivetrain.ideal ? IdealDrivetrain() : options.drivetrain;
+  const CarDescription true_car = TrueCar(options.car, drivetrain);
   SpecPtr spec = ReadRoom(options.room, options.curtain_closed);
   SetOptions(spec.get());
-  car_body::AddTo(spec.get(), options.car, options.T_world_start);
-  drivetrain::AddTo(spec.get(), options.car);
+  car_body::AddTo(spec.get(), true_car, options.T_world_start);
+  drivetrain::AddTo(spec.get(), true_car);
   AddObstacles(spec.get(), options.obstacles);
   model_.reset(mj_compile(spec.get(), nullptr));
   if (!model_) throw RoomError(options.room, "the room with the car in it does not compile", mjs_getError(spec.get()));
@@ -50,6 +67,10 @@ World::World(const WorldOptions& options) {
   if (!data_) throw std::runtime_error("MuJoCo cannot make its data: out of memory");
   ReadNumerics(options.room.string());
   NameParts(options.car, options.obstacles);
+  const auto tyre = std::ranges::find_if(std::views::iota(0, static_cast<int>(model_->ngeom)), [this](int geom) {
+    return is_wheel_[geom] && model_->geom_contype[geom] != 0;
+  });
+  SetGrip(model_.get(), is_floor_, *tyre, options.materials, drivetrain.surface);
   PutOnFloor(options);
   mj_forward(model_.get(), data_.get());
   for (int geom = 0; geom < model_->ngeom; ++geom)
@@ -58,7 +79,7 @@ World::World(const WorldOptions& options) {
         throw InputError(options.room.string(), "geom '" + GeomName(model_.get(), geom) + "' stands nowhere",
                          fmt::format("a position within {:g} m", kFarthest_m), fmt::format("{:g}", data_->geom_xpos[3 * geom + axis]));
   RefuseStartInContact(options);
-  drive_ = drivetrain::Controller(model_.get(), options.car);
+  drive_ = DriveController(model_.get(), options.car, drivetrain, options.seed);
 }
 
 World::~World() = default;
@@ -170,6 +191,7 @@ void World::Step() {
   // current.
   mj_step2(model_.get(), data_.get());
   mj_step1(model_.get(), data_.get());
+  drive_.Follow(model_.get(), data_.get());
   for (int i = 0; i < mjNWARNING; ++i)
     if (data_->warning[i].number > 0)
       throw std::runtime_error(

@@ -13,7 +13,9 @@
 #include "robot/types/measurements.h"
 #include "robot/types/se3.h"
 #include "robot/types/time.h"
-#include "sim/drivetrain.h"
+#include "sim/drive_controller.h"
+#include "sim/drivetrain_config.h"
+#include "sim/materials.h"
 #include "sim/motion.h"
 
 namespace merlin::sim {
@@ -31,6 +33,9 @@ struct WorldOptions {
   Pose T_world_start = Pose::Identity();  // of base_link; its height is taken from the floor there (within 0.5 m of z)
   std::vector<Obstacle> obstacles{};
   bool curtain_closed = false;  // geoms named "curtain*" hang where the room has them (true), or are not there (false)
+  DrivetrainConfig drivetrain{};  // how the true car and its drive differ from the description
+  Materials materials{};          // of the floors: their grip
+  std::uint64_t seed = 1;
 };
 
 // Two geoms that touch, the first of them the car's. A wheel on a geom named "floor*" is no contact.
@@ -43,7 +48,7 @@ class World {
  public:
   // Throws InputError: a room that is missing or not MJCF (with its line where MuJoCo knows it), a missing mesh, a room
   // without a geom named "floor*", a curtain to close where there is none, a car that starts off the floor, in contact
-  // with anything else or inside it. Physics options (step, integrator, solver) are ours, whatever the room says.
+  // with anything else or inside it, a drivetrain out of its ranges, a surface that is no material. Physics options (step, integrator, solver) are ours, whatever the room says.
   // Errors of MuJoCo itself throw std::runtime_error from then on, in the whole process; it prints and logs nothing.
   explicit World(const WorldOptions& options);
   ~World();
@@ -70,8 +75,8 @@ class World {
   // An unknown name is an InputError, here and above.
   double ObstacleDistance_m(const std::string& name, double max_m = 10.0) const;
 
-  drivetrain::Controller& drive() { return drive_; }
-  const drivetrain::Controller& drive() const { return drive_; }
+  DriveController& drive() { return drive_; }
+  const DriveController& drive() const { return drive_; }
 
   // The outer outline of the room ("plan_xy_m"), empty if the room gives none; yaw of magnetic north.
   const std::vector<Eigen::Vector2d>& plan_xy_m() const { return plan_xy_m_; }
@@ -94,7 +99,7 @@ class World {
 
   std::unique_ptr<mjModel, void (*)(mjModel*)> model_{nullptr, mj_deleteModel};
   std::unique_ptr<mjData, void (*)(mjData*)> data_{nullptr, mj_deleteData};
-  drivetrain::Controller drive_;
+  DriveController drive_;
   int base_body_ = -1;
   double wheel_radius_m_ = 0.0;
   std::vector<bool> is_car_, is_wheel_, is_floor_;  // by geom

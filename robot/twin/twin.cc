@@ -169,11 +169,19 @@ class TwinDrive final : public Drive {
   Outbox<DriveState> outbox_{Duration(0)};
 };
 
+// The world shares the seed and the materials.
+sim::WorldOptions WorldOf(const TwinOptions& options) {
+  sim::WorldOptions world = options.world;
+  world.materials = options.materials;
+  world.seed = options.seed;
+  return world;
+}
+
 }  // namespace
 
 struct Twin::Impl final : public Clock {
   explicit Impl(const TwinOptions& options)
-      : end(options.end), world(options.world), depth_worker(options.threads > 1), color_worker(options.threads > 2),
+      : end(options.end), world(WorldOf(options)), depth_worker(options.threads > 1), color_worker(options.threads > 2),
         depth(options, world, depth_worker), drive(world, options.drive_rate_hz) {
     // With two threads the cameras share one beside the caller's.
     if (options.color) color.emplace(options, world, options.threads > 2 ? color_worker : depth_worker);

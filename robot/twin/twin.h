@@ -38,7 +38,7 @@ struct TwinOptions {
     double rate_hz = 10.0;
   };
 
-  sim::WorldOptions world;
+  sim::WorldOptions world;  // but for its materials and seed, which are those below
   sim::Materials materials;
   std::uint64_t seed = 1;
   Depth depth;

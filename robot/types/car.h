@@ -82,7 +82,8 @@ struct CarDescription {
   double track_m = 0.0;           // between the wheels' middles, mean of front and rear
   double steering_track_m = 0.0;  // between the two steering axes; they may stand beside the wheels' middles
   double wheel_radius_m = 0.0;
-  double steering_max_rad = 0.0;  // of the virtual wheel midway between the front ones, as the knuckles' limits allow
+  double steering_max_rad = 0.0;     // of the virtual wheel midway between the front ones, as the knuckles' limits allow
+  double steering_offset_rad = 0.0;  // of the wheels from what the servo reports; only a calibration knows it
   Drivetrain drivetrain;
   Pose T_base_depth = Pose::Identity();  // optical frames
   Pose T_base_color = Pose::Identity();

@@ -43,13 +43,19 @@ inline std::string Room(const std::string& worldbody, const std::string& rest = 
 }
 
 inline std::unique_ptr<World> MakeWorld(const std::string& room, const Pose& T_world_start = Pose::Identity(),
-                                        const std::vector<Obstacle>& obstacles = {}) {
+                                        const std::vector<Obstacle>& obstacles = {},
+                                        const DrivetrainConfig& drivetrain = {}) {
   const TemporaryFile file("room.xml", room);
-  return std::make_unique<World>(
-      WorldOptions{.room = file.path(), .car = Merlin(), .T_world_start = T_world_start, .obstacles = obstacles});
+  return std::make_unique<World>(WorldOptions{.room = file.path(),
+                                              .car = Merlin(),
+                                              .T_world_start = T_world_start,
+                                              .obstacles = obstacles,
+                                              .drivetrain = drivetrain});
 }
 
-inline std::unique_ptr<World> EmptyWorld() { return MakeWorld(Room(kPlane)); }
+inline std::unique_ptr<World> EmptyWorld(const DrivetrainConfig& drivetrain = {}) {
+  return MakeWorld(Room(kPlane), Pose::Identity(), {}, drivetrain);
+}
 
 inline void Send(World& world, double speed_m_s, double steering_rad, double valid_for_s = 1e6) {
   world.drive().Send({.speed_m_s = speed_m_s, .steering_rad = steering_rad, .valid_for = FromSeconds(valid_for_s)},

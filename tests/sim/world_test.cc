@@ -62,7 +62,7 @@ TEST(World, StartsWhereTheFloorIs) {
 }
 
 TEST(World, SpeedIsSignedAndAlongTheCar) {
-  const auto world = MakeWorld(Room(kPlane), FromXyYaw(0.0, 0.0, 2.5));
+  const auto world = MakeWorld(Room(kPlane), FromXyYaw(0.0, 0.0, 2.5), {}, IdealDrivetrain());
   EXPECT_EQ(world->Speed_m_s(), 0.0);
   Send(*world, -0.4, 0.0);
   StepFor(*world, 1.0);

@@ -42,7 +42,7 @@ void ExpectRefused(const std::string& arguments, const std::string& part, const 
 
 TEST(Cli, HelpFitsAScreen) {
   const TemporaryFolder folder;
-  for (const char* arguments : {"--help", "run --help", "list --help", "doctor --help"}) {
+  for (const char* arguments : {"--help", "run --help", "list --help", "calibrate odometry --help", "doctor --help"}) {
     const Outcome outcome = Merlin(arguments, folder.path());
     EXPECT_EQ(outcome.code, 0) << arguments;
     EXPECT_LE(std::ranges::count(outcome.said, '\n'), 40) << arguments;
@@ -66,6 +66,40 @@ TEST(Cli, RefusesBadUsageWithExitTwo) {
   ExpectRefused("run corridor_short --duration -1", "--set: duration_s", folder.path());
   ExpectRefused("run ./" + std::string(300, 'x'), "scenario", folder.path());
   ExpectRefused("list planets", "planets", folder.path());
+}
+
+TEST(Cli, RefusesToCalibrateFromNothingUsable) {
+  const TemporaryFolder folder;
+  ExpectRefused("calibrate", "subcommand", folder.path());
+  ExpectRefused("calibrate odometry", "what is it to calibrate from?", folder.path());
+  ExpectRefused("calibrate odometry no.yaml --study", "several", folder.path());
+  ExpectRefused("calibrate odometry no.yaml", "no.yaml: cannot be read", folder.path());
+  ExpectRefused("calibrate odometry --robot moon", "--robot", folder.path());
+  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.wheel_radius=1", "wheel_radius_factor", folder.path());
+  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=nan", "wheel_radius_factor",
+                folder.path());
+  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.surface=floor_ice", "floor_tiles", folder.path());
+  std::ofstream(folder.path() / "d.yaml") << "straights: [{encoder_counts: 74112, distance_m: 5.0}]\n"
+                                             "circles: [{steering_rad: 0.2, diameter_m: 3.2}]\n";
+  ExpectRefused("calibrate odometry d.yaml", "d.yaml: too few drives", folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "calibration.yaml"));
+  ExpectRefused("run corridor_short --set car.calibration=no.yaml", "no.yaml: cannot be read", folder.path());
+}
+
+TEST(Cli, CalibratesTheTwinToAFileThatAScenarioTakes) {
+  const TemporaryFolder folder;
+  const Outcome outcome = Merlin("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=0.97", folder.path());
+  EXPECT_EQ(outcome.code, 0) << outcome.said;
+  const Outcome run = Merlin("run corridor_short --gl off --duration 1 --set checks={} --set car.calibration=calibration.yaml "
+                             "--set car.drivetrain.wheel_radius_factor=0.97", folder.path());
+  EXPECT_EQ(run.code, 0) << run.said;
+}
+
+TEST(Cli, TellsHowFastThePhysicsIs) {
+  const TemporaryFolder folder;
+  const Outcome outcome = Merlin("bench physics --json", folder.path());
+  EXPECT_EQ(outcome.code, 0) << outcome.said;
+  EXPECT_NE(outcome.said.find("\"times_real_time\": "), std::string::npos) << outcome.said;
 }
 
 TEST(Cli, RefusesBadScenariosRoomsAndCamerasWithExitTwo) {

@@ -8,6 +8,7 @@
 #include "tools/cli/commands.h"
 #if MERLIN_TWIN
 #include "tools/camera/bench.h"
+#include "tools/physics/bench.h"
 #endif
 
 namespace merlin::cli {
@@ -21,11 +22,16 @@ struct Arguments {
 
 #if MERLIN_TWIN
 
-int Bench(const Arguments& arguments) {
-  const CameraBench bench = BenchCamera(arguments.threads, interrupted);
+template <class Result>
+int Print(const Result& bench, bool json) {
   if (interrupted) return kInterrupted;
-  fmt::print("{}", arguments.json ? ToJson(bench) : Table(bench));
+  fmt::print("{}", json ? ToJson(bench) : Table(bench));
   return kPass;
+}
+
+int Bench(const Arguments& arguments) {
+  if (arguments.what == "physics") return Print(BenchPhysics(interrupted), arguments.json);
+  return Print(BenchCamera(arguments.threads, interrupted), arguments.json);
 }
 
 #else
@@ -39,10 +45,10 @@ int Bench(const Arguments&) { throw MachineError("this build has no twin (MERLIN
 void AddBench(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* bench = app.add_subcommand("bench", "how long things take on this machine");
-  bench->add_option("what", arguments->what, "camera: frames and rays in corridor_26x21")
+  bench->add_option("what", arguments->what, "camera: frames and rays in corridor_26x21; physics: steps in room_7x10")
       ->required()
-      ->check(CLI::IsMember({"camera"}));
-  bench->add_option("--threads", arguments->threads, "measured beside one thread; default 2")
+      ->check(CLI::IsMember({"camera", "physics"}));
+  bench->add_option("--threads", arguments->threads, "of the cameras, measured beside one thread; default 2")
       ->check(CLI::Range(1, 256));
   bench->add_flag("--json", arguments->json, "for machines");
   bench->callback([arguments, &exit_code] { exit_code = Bench(*arguments); });

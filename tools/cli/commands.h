@@ -14,6 +14,7 @@ extern std::atomic<bool> interrupted;
 
 void AddRun(CLI::App& app, int& exit_code);
 void AddCamera(CLI::App& app, int& exit_code);
+void AddCalibrate(CLI::App& app, int& exit_code);
 void AddBench(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddDoctor(CLI::App& app, int& exit_code);

@@ -25,6 +25,7 @@ int Main(int argc, char** argv) {
   int exit_code = kPass;
   AddRun(app, exit_code);
   AddCamera(app, exit_code);
+  AddCalibrate(app, exit_code);
   AddList(app, exit_code);
   AddBench(app, exit_code);
   AddDoctor(app, exit_code);
