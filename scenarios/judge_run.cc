@@ -81,29 +81,32 @@ void Evidence::Add(const ColorFrame& frame) {
   color.Add(std::span<const std::uint8_t>(frame.bgr));
 }
 
-RunResult JudgeRun(const std::string& name, const Scenario& scenario, Twin& twin, const Truth& truth, const DriveLoop& loop,
-                   const Evidence& evidence, OutputFolder& folder) {
+RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robot& robot, const TrueWorld& true_world,
+                   const DriveLoop& loop, const Evidence& evidence, OutputFolder& folder) {
   RunResult result{.scenario = name, .seed = scenario.seed, .versions = Versions()};
   Metrics& metrics = result.metrics;
   const Slam& slam = loop.slam();
-  const Outline outline = twin.world().plan_xy_m();
+  const Truth* truth = true_world.truth;
+  const Outline outline = true_world.world != nullptr ? true_world.world->plan_xy_m() : Outline{};
+  const Trajectory true_path = truth != nullptr ? truth->trajectory() : Trajectory{};
   const Trajectory estimate = ToTrajectory(slam.trajectory());
   const std::vector<MapPoint> map = MapPoints(slam, scenario.slam.map_points_min);
 
-  metrics.distance_m = PathLength_m(truth.trajectory());
-  metrics.laps = CountLaps(truth.trajectory(), outline);
-  metrics.collisions = truth.collisions();
-  metrics.obstacle_gap_m = truth.obstacle_gap_m();
-  metrics.obstacle_stop_s = truth.obstacle_stop_s();
+  metrics.distance_m = truth != nullptr ? PathLength_m(true_path) : slam.path_m();
+  if (truth != nullptr) {
+    metrics.laps = CountLaps(true_path, outline);
+    metrics.collisions = truth->collisions();
+    metrics.obstacle_gap_m = truth->obstacle_gap_m();
+    metrics.obstacle_stop_s = truth->obstacle_stop_s();
+  }
   metrics.depth_frames = evidence.depth_frames;
   metrics.color_frames = evidence.color_frames;
-  const Robot robot = twin.robot();
   metrics.frames_dropped = static_cast<std::int64_t>(robot.depth->Status().missed + (robot.color ? robot.color->Status().missed : 0));
   metrics.stack_ms = Percentiles(loop.stack_ms());
 
-  const std::vector<PosePair> pairs = PairAtEqualStamps(truth.trajectory(), estimate);
+  const std::vector<PosePair> pairs = PairAtEqualStamps(true_path, estimate);
   MapPicture picture{.title = name + ", seed " + std::to_string(scenario.seed), .map = map, .outline = outline,
-                     .truth = truth.trajectory(), .estimate = estimate};
+                     .truth = true_path, .estimate = estimate};
   if (const auto ate = AlignAndAte(pairs)) {
     metrics.ate_rmse_m = picture.ate_rmse_m = ate->rmse_m;
     metrics.ate_online_rmse_m = ate->rmse_m;  // nothing corrects the path afterwards yet
@@ -111,10 +114,10 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, Twin& twin
     picture.size = MeasureMapSize(map, ate->T_world_map, outline);
     metrics.map_size_m = picture.size.size_m;
     metrics.map_size_error_percent = picture.size.error_percent;
-    const sim::RayScene room(twin.world().model(), CarBodies(twin.world()));
+    const sim::RayScene room(true_world.world->model(), CarBodies(*true_world.world));
     const TrueRange true_range = TrueRangeOf(room);
     metrics.map_to_plan_p95_m = MapToPlanP95_m(map, ate->T_world_map, true_range);
-    metrics.coverage_percent = CoveragePercent(map, ate->T_world_map, outline, truth.trajectory(), true_range);
+    metrics.coverage_percent = CoveragePercent(map, ate->T_world_map, outline, true_path, true_range);
   }
   if (const auto rpe = RpeOverOneMetre(pairs)) {
     metrics.rpe_translation_percent = rpe->translation_percent;
@@ -124,13 +127,14 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, Twin& twin
   const std::string tum = ToTum(estimate), ply = ToPly(map);
   folder.Write("trajectory_estimate.tum", tum);
   folder.Write("trajectory_online.tum", tum);
-  folder.Write("trajectory_truth.tum", ToTum(truth.trajectory()));
+  if (truth != nullptr) folder.Write("trajectory_truth.tum", ToTum(true_path));
   folder.Write("map.ply", ply);
   const GridMap grid = ToGridMap(slam.occupancy());
   folder.Write("map.pgm", ToPgm(grid));
   folder.Write("map.yaml", ToMapYaml(grid, "map.pgm"));
   folder.Write("map.png", ToPng(picture));
-  result.hashes = {.state = truth.state_hash(), .depth = evidence.depth.Hex(), .color = std::nullopt,
+  if (!true_world.repeats) return result;
+  result.hashes = {.state = truth->state_hash(), .depth = evidence.depth.Hex(), .color = std::nullopt,
                    .trajectory = HashOf(tum), .map = HashOf(ply)};
   if (robot.color) result.hashes.color = evidence.color.Hex();
   return result;

@@ -20,8 +20,15 @@ struct Evidence {
   void Add(const ColorFrame& frame);
 };
 
+// What only a simulation knows. Null: not known, and the figures that need it are null, too.
+struct TrueWorld {
+  const sim::World* world = nullptr;
+  const Truth* truth = nullptr;
+  bool repeats = false;  // the same bits every time: hashes mean something
+};
+
 // Writes trajectories and maps into the folder and fills in all figures but those of wall time. Checks are not evaluated.
-RunResult JudgeRun(const std::string& name, const Scenario& scenario, Twin& twin, const Truth& truth, const DriveLoop& loop,
-                   const Evidence& evidence, OutputFolder& folder);
+RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robot& robot, const TrueWorld& true_world,
+                   const DriveLoop& loop, const Evidence& evidence, OutputFolder& folder);
 
 }  // namespace merlin

@@ -3,110 +3,41 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
 #include <memory>
-#include <ranges>
+#include <optional>
 #include <thread>
 
 #include "robot/description/description.h"
-#include "robot/twin/twin.h"
+#include "robot/hardware/hardware_robot.h"
+#include "robot/twin/devices/emulated_robot.h"
 #include "robot/types/error.h"
-#include "robot/types/nearest_name.h"
-#include "scenarios/calibration.h"
 #include "scenarios/drive_loop.h"
-#include "scenarios/judge_run.h"
+#include "scenarios/hardware_file.h"
 #include "scenarios/judge/output_folder.h"
+#include "scenarios/judge_run.h"
 #include "scenarios/names.h"
 #include "scenarios/truth.h"
+#include "scenarios/twin_options.h"
 
 namespace merlin {
 namespace {
 
 using WallClock = std::chrono::steady_clock;
 
+constexpr Duration kReady = std::chrono::seconds(10);  // until every device has delivered
+
 double SecondsSince(WallClock::time_point begin) { return std::chrono::duration<double>(WallClock::now() - begin).count(); }
-
-void RequireRate(const char* field, double rate_hz, double max_hz) {
-  if (!(rate_hz <= max_hz)) throw InputError(field, "faster than the camera", fmt::format("up to {:g} Hz", max_hz), fmt::format("{:g} Hz", rate_hz));
-}
-
-void RequireMaterial(const std::string& name, const sim::Materials& materials) {
-  if (materials.by_name.contains(name)) return;
-  throw InputError("obstacles", fmt::format("unknown material '{}'; did you mean '{}'?", name,
-                                            NearestName(name, std::views::keys(materials.by_name))));
-}
-
-DepthSettings SettingsOf(const DepthSensor& sensor) {
-  return {.integration_s = sensor.integration_us * 1e-6,
-          .frequency_hz = sensor.frequency_mhz * 1e6,
-          .second_frequency_hz = sensor.second_frequency_mhz * 1e6,
-          .post_processing = sensor.post_processing};
-}
-
-TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
-  const Sensors& sensors = scenario.sensors;
-  TwinOptions twin;
-  const CarStart& start = scenario.car.start;
-  twin.world = {RoomFile(scenario.room), ReadCar(CarFile(scenario.car.model)), FromXyYaw(start.x_m, start.y_m, start.yaw_rad),
-                ObstaclesOf(scenario), scenario.curtain == "closed"};
-  twin.materials = sim::ReadMaterials(Home() / "models/materials.yaml");
-  twin.world.drivetrain = scenario.car.drivetrain;
-  twin.seed = scenario.seed;
-  const std::filesystem::path depth_file = DepthCameraFile(sensors.depth.camera);
-  twin.depth = {ReadDepthCameraSheet(depth_file), ReadDepthCameraErrors(depth_file), SettingsOf(sensors.depth),
-                sim::ParseTofEffects(sensors.depth.effects), sensors.depth.rate_hz};
-  RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, twin.depth.sheet.rate_max_hz);
-  RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, 1.0 / twin.depth.sheet.ExposureSpan_s(twin.depth.settings));
-  for (const ObstacleEvent& event : scenario.obstacles) RequireMaterial(event.material, twin.materials);
-  twin.depth.sheet.latency_s = sensors.depth.latency_s.value_or(twin.depth.sheet.latency_s);
-  if (sensors.color) {
-    twin.color.emplace(ReadColorCameraSheet(ColorCameraFile(sensors.color->camera)), sensors.color->rate_hz, options.gl);
-    RequireRate("sensors.color.rate_hz", sensors.color->rate_hz, twin.color->sheet.rate_max_hz);
-    twin.color->sheet.latency_s = sensors.color->latency_s.value_or(twin.color->sheet.latency_s);
-    if (sensors.color->exposure_us)
-      twin.color->settings = ColorSettings{.exposure_s = *sensors.color->exposure_us * 1e-6, .auto_exposure = false};
-    twin.color->motion_blur = sensors.color->motion_blur;
-  }
-  if (sensors.compass)
-    twin.compass.emplace(sim::CompassConfig{sensors.compass->noise_rad, sensors.compass->noise_rad}, sensors.compass->rate_hz);
-  twin.end = FromSeconds(scenario.duration_s);
-  twin.threads = options.threads;
-  return twin;
-}
-
-// The car as the stack knows it: its description, and what a calibration found better.
-CarDescription BelievedCar(const CarChoice& choice) {
-  const CarDescription car = ReadCar(CarFile(choice.model));
-  return choice.calibration.empty() ? car : Calibrated(car, ReadCalibration(choice.calibration));
-}
 
 // A check of the map against a plan needs a plan.
 void RequirePlan(const RunOptions& options, const sim::World& world) {
   for (const CheckLimit& check : options.scenario.checks)
     if (world.plan_xy_m().empty() && (check.name.starts_with("map_size") || check.name.starts_with("laps") || check.name.starts_with("coverage")))
       throw InputError(options.scenario.room, "no plan", "a numeric plan_xy_m, which the check " + check.name + " needs");
-}
-
-// Without GL a scenario that can do without colour runs on depth alone, and says so.
-std::unique_ptr<Twin> MakeTwin(TwinOptions twin, const Scenario& scenario, std::string& note) {
-  if (!twin.color) return std::make_unique<Twin>(twin);
-  const bool required = scenario.sensors.color->required;
-  if (twin.color->gl == sim::Gl::kOff) {
-    if (required) throw MachineError("this scenario needs the colour camera (sensors.color.required), and --gl is off");
-    note = "depth only: --gl is off";
-    twin.color.reset();
-    return std::make_unique<Twin>(twin);
-  }
-  try {
-    return std::make_unique<Twin>(twin);
-  } catch (const MachineError& error) {
-    if (required) throw MachineError("this scenario needs the colour camera (sensors.color.required): " + std::string(error.what()));
-    note = "depth only: " + std::string(error.what());
-  }
-  twin.color.reset();
-  return std::make_unique<Twin>(twin);
 }
 
 double PeakRss_mb() {
@@ -136,47 +67,189 @@ class Pacer {
   WallClock::time_point begin_ = WallClock::now(), reported_ = begin_;
 };
 
+// One run of whatever robot: drive, judge, write.
+class Session {
+ public:
+  Session(const RunOptions& options, const std::atomic<bool>& stop)
+      : options_(options), stop_(stop), car_(BelievedCar(options.scenario.car)) {}
+
+  // keep: notes the truth at a stamp. time: of the world, or of the clock where there is none.
+  RunReport Drive(const Robot& robot, const std::function<TrueWorld()>& true_world, const std::function<void(Time)>& keep,
+                  const std::string& gl_name, const std::string& note) {
+    const Scenario& scenario = options_.scenario;
+    OutputFolder folder(options_.out);
+    folder.Write("scenario.yaml", ToYaml(scenario));
+    DriveLoop loop(robot, car_, scenario.perception, scenario.slam, scenario.task, scenario.pilot);
+    Evidence evidence;
+    const double setup_s = SecondsSince(begin_);
+    const auto first_step = WallClock::now();
+    const Time first = robot.clock->Now();
+    Pacer pacer(options_, stop_);
+    const LoopEnd end = loop.Run(
+        stop_, {.depth = [&](const DepthFrame& frame) { evidence.Add(frame), keep(frame.stamp); },
+                .color = [&](const ColorFrame& frame) { evidence.Add(frame); },
+                .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop.slam().path_m(), decision.doing); }});
+    const double wall_s = SecondsSince(first_step);
+
+    RunReport report{.result = JudgeRun(options_.name, scenario, robot, true_world(), loop, evidence, folder),
+                     .gl_name = gl_name,
+                     .note = note};
+    RunResult& result = report.result;
+    result.metrics.wall_time_s = wall_s;
+    result.metrics.setup_s = setup_s;
+    result.metrics.sim_time_s = Seconds(robot.clock->Now() - first);
+    result.metrics.real_time_factor = *result.metrics.sim_time_s / wall_s;
+    result.metrics.peak_rss_mb = PeakRss_mb();
+    result.checks = Evaluate(scenario.checks, result.metrics, options_.name);
+    if (end == LoopEnd::kDeviceLost) result.fault = "the depth camera or the drive fell silent for a second";
+    result.verdict = end == LoopEnd::kInterrupted ? Verdict::kInterrupted
+                     : end == LoopEnd::kDeviceLost ? Verdict::kFail
+                                                   : Judge(result.checks);
+    folder.Write("junit.xml", ToJUnit(result));
+    folder.Finish(ToJson(result));
+    return report;
+  }
+
+ private:
+  const RunOptions& options_;
+  const std::atomic<bool>& stop_;
+  CarDescription car_;
+  WallClock::time_point begin_ = WallClock::now();
+};
+
+RunReport RunInTwin(const RunOptions& options, const std::atomic<bool>& stop) {
+  Session session(options, stop);
+  std::unique_ptr<Twin> twin;
+  std::string note;
+  MakeWithColor(TwinOptionsOf(options.scenario, options), options.scenario, note,
+                [&](const TwinOptions& with) { twin = std::make_unique<Twin>(with); });
+  RequirePlan(options, twin->world());
+  Truth truth(options.scenario, twin->world());
+  twin->OnStep([&truth](sim::World& world) { truth.Watch(world); });
+  return session.Drive(
+      twin->robot(), [&] { return TrueWorld{&twin->world(), &truth, true}; }, [&](Time stamp) { truth.Keep(stamp); },
+      twin->gl_name(), note);
+}
+
+// A folder of this run's own for the devices' sockets, gone with it.
+class SocketFolder {
+ public:
+  SocketFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "merlin-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw MachineError(name + ": cannot make a folder for the devices' sockets");
+    path_ = name;
+  }
+  ~SocketFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// The emulated ToF camera's library, as this program was built with it; MERLIN_PMD_LIBRARY names another.
+std::string PmdLibrary() {
+  const char* other = std::getenv("MERLIN_PMD_LIBRARY");
+  return other != nullptr ? other : MERLIN_PMD_LIBRARY;
+}
+
+HardwareConfig DevicesOf(const EmulatedRobot& emulated) {
+  HardwareConfig config;
+  config.drive.serial = {emulated.drive_port(), EmulatedRobot::kDriveBaud};
+  if (const auto port = emulated.compass_port()) config.compass.emplace().serial = {*port, 9600};
+  config.depth.pmd.library = PmdLibrary();
+  config.depth.pmd.source_argument = emulated.depth_socket();
+  if (const auto url = emulated.color_url()) {
+    config.color.emplace().source = *url;
+    config.color->stream_latency_s = EmulatedRobot::kStreamLatency_s;
+  }
+  return config;
+}
+
+void RequireReady(HardwareRobot& robot) {
+  std::string faults;
+  for (const std::string& complaint : robot.WaitUntilReady(kReady)) faults += (faults.empty() ? "" : "\n") + complaint;
+  if (!faults.empty()) throw MachineError(faults);
+}
+
+HardwareCameras CamerasOf(const TwinOptions& twin) {
+  HardwareCameras cameras{.depth = {twin.depth.sheet, twin.world.car.T_base_depth, twin.depth.rate_hz},
+                          .depth_settings = twin.depth.settings};
+  if (twin.color) {
+    cameras.color = {twin.color->sheet, twin.world.car.T_base_color, twin.color->rate_hz};
+    cameras.color_settings = twin.color->settings.value_or(DefaultSettings(twin.color->sheet));
+  }
+  return cameras;
+}
+
+RunReport RunEmulated(const RunOptions& options, const std::atomic<bool>& stop) {
+  Session session(options, stop);
+  const SocketFolder sockets;
+  RealClock clock({}, Time::max());
+  std::unique_ptr<EmulatedRobot> emulated;
+  HardwareCameras cameras;
+  std::string note;
+  MakeWithColor(TwinOptionsOf(options.scenario, options), options.scenario, note, [&](const TwinOptions& with) {
+    emulated = std::make_unique<EmulatedRobot>(with, sockets.path(), clock);
+    cameras = CamerasOf(with);
+  });
+  const auto locked = [&](const auto& use) { return emulated->With(use); };
+  std::optional<Truth> truth;
+  std::string gl_name;
+  locked([&](Twin& twin) {
+    RequirePlan(options, twin.world());
+    truth.emplace(options.scenario, twin.world());
+    twin.OnStep([&truth](sim::World& world) { truth->Watch(world); });
+    gl_name = twin.gl_name();
+  });
+  emulated->Start();
+  HardwareRobot hardware(DevicesOf(*emulated), cameras, clock);
+  RequireReady(hardware);
+  const auto true_world = [&] {
+    emulated->Stop();
+    return locked([&](Twin& twin) { return TrueWorld{&twin.world(), &*truth, false}; });
+  };
+  const Time end = clock.Now() + FromSeconds(options.scenario.duration_s);
+  const auto keep = [&](Time stamp) {
+    locked([&](Twin&) { truth->Keep(stamp); });
+    if (clock.Now() >= end) clock.End();
+  };
+  RunReport report = session.Drive(hardware.robot(), true_world, keep, gl_name, note);
+  if (emulated->lag() > std::chrono::milliseconds(100))
+    report.note += fmt::format("{}the world fell {:.0f} ms behind the clock: this machine was too slow at times",
+                               report.note.empty() ? "" : "; ", 1e3 * Seconds(emulated->lag()));
+  return report;
+}
+
+RunReport RunOnHardware(const RunOptions& options, const std::atomic<bool>& stop) {
+  Session session(options, stop);
+  const HardwareConfig config = ReadHardwareFile(options.hardware_file);
+  HardwareCameras cameras = CamerasOf(options.scenario);
+  RealClock clock(config.clock, Time::max());
+  HardwareRobot hardware(config, cameras, clock);
+  RequireReady(hardware);
+  const Time end = clock.Now() + FromSeconds(options.scenario.duration_s);
+  return session.Drive(
+      hardware.robot(), [] { return TrueWorld{}; },
+      [&](Time) {
+        if (clock.Now() >= end) clock.End();
+      },
+      "", "");
+}
+
 }  // namespace
 
 RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) {
-  const auto begin = WallClock::now();
-  const Scenario& scenario = options.scenario;
-  RunReport report;
-  const CarDescription car = BelievedCar(scenario.car);
-  const std::unique_ptr<Twin> twin = MakeTwin(TwinOptionsOf(scenario, options), scenario, report.note);
-  RequirePlan(options, twin->world());
-  OutputFolder folder(options.out);
-  folder.Write("scenario.yaml", ToYaml(scenario));
-  report.gl_name = twin->gl_name();
-
-  Truth truth(scenario, twin->world());
-  twin->OnStep([&truth](sim::World& world) { truth.Watch(world); });
-  DriveLoop loop(twin->robot(), car, scenario.perception, scenario.slam, scenario.task, scenario.pilot);
-  Evidence evidence;
-  const double setup_s = SecondsSince(begin);
-  const auto first_step = WallClock::now();
-  Pacer pacer(options, stop);
-  const LoopEnd end = loop.Run(
-      stop, {.depth = [&](const DepthFrame& frame) { evidence.Add(frame), truth.Keep(frame.stamp); },
-             .color = [&](const ColorFrame& frame) { evidence.Add(frame); },
-             .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop.slam().path_m(), decision.doing); }});
-  const double wall_s = SecondsSince(first_step);
-
-  RunResult& result = report.result;
-  result = JudgeRun(options.name, scenario, *twin, truth, loop, evidence, folder);
-  result.metrics.wall_time_s = wall_s;
-  result.metrics.setup_s = setup_s;
-  result.metrics.sim_time_s = Seconds(twin->world().Now());
-  result.metrics.real_time_factor = *result.metrics.sim_time_s / wall_s;
-  result.metrics.peak_rss_mb = PeakRss_mb();
-  result.checks = Evaluate(scenario.checks, result.metrics, options.name);
-  if (end == LoopEnd::kDeviceLost) result.fault = "the depth camera or the drive fell silent for a second";
-  result.verdict = end == LoopEnd::kInterrupted ? Verdict::kInterrupted
-                   : end == LoopEnd::kDeviceLost ? Verdict::kFail
-                                                 : Judge(result.checks);
-  folder.Write("junit.xml", ToJUnit(result));
-  folder.Finish(ToJson(result));
-  return report;
+  switch (options.robot) {
+    case RobotKind::kEmulated:
+      return RunEmulated(options, stop);
+    case RobotKind::kHardware:
+      return RunOnHardware(options, stop);
+    default:
+      return RunInTwin(options, stop);
+  }
 }
 
 }  // namespace merlin

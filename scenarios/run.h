@@ -1,4 +1,5 @@
-// Runs a scenario in the twin, judges it against the truth, and leaves its files.
+// Runs a scenario: in the twin, in the twin behind its real drivers and protocols, or on the real car; judges it against the
+// truth where there is one, and leaves its files.
 #pragma once
 
 #include <atomic>
@@ -12,10 +13,14 @@
 
 namespace merlin {
 
+enum class RobotKind { kTwin, kEmulated, kHardware };
+
 struct RunOptions {
   std::string name;                            // of the scenario, for people and for result.json
   Scenario scenario;
   std::filesystem::path out;
+  RobotKind robot = RobotKind::kTwin;
+  std::filesystem::path hardware_file{};       // of kHardware
   sim::Gl gl = sim::Gl::kAuto;                 // kOff: depth only
   int threads = 2;
   double pace = 0.0;                           // simulated over wall time not to be exceeded; 0: as fast as it goes

@@ -61,8 +61,12 @@ void Truth::WatchObstacles(sim::World& world) {
 }
 
 void Truth::Keep(Time stamp) {
-  const auto at = std::ranges::find(recent_, stamp, &StampedPose::stamp);
-  if (at != recent_.end()) trajectory_.push_back(*at);
+  const auto after = std::ranges::lower_bound(recent_, stamp, {}, &StampedPose::stamp);
+  if (after == recent_.end() || (after == recent_.begin() && after->stamp != stamp)) return;
+  if (after->stamp == stamp) return trajectory_.push_back(*after);
+  const auto before = std::prev(after);
+  const double share = Seconds(stamp - before->stamp) / Seconds(after->stamp - before->stamp);
+  trajectory_.push_back({stamp, Interpolate(before->T, after->T, share)});
 }
 
 }  // namespace merlin

@@ -21,7 +21,7 @@ class Truth {
 
   // After every step: places and removes obstacles, counts contacts, hashes the state.
   void Watch(sim::World& world);
-  // Keeps the true pose at a stamp of the last second.
+  // Keeps the true pose at a stamp of the last second, between two steps if need be.
   void Keep(Time stamp);
 
   const Trajectory& trajectory() const { return trajectory_; }

@@ -45,6 +45,19 @@ double PaceOf(const std::string& text) {
   return pace;
 }
 
+void SetRobot(const std::string& text, RunOptions& options) {
+  const std::string hardware = "hardware:";
+  if (text == "twin") return;
+  if (text == "emulated") {
+    options.robot = RobotKind::kEmulated;
+  } else if (text.starts_with(hardware) && text.size() > hardware.size()) {
+    options.robot = RobotKind::kHardware;
+    options.hardware_file = text.substr(hardware.size());
+  } else {
+    throw InputError("--robot", "unknown robot", "twin, emulated or hardware:FILE", "'" + text + "'");
+  }
+}
+
 // A line that renews itself on a terminal, a plain one every ten seconds of the run elsewhere.
 class Progress {
  public:
@@ -108,7 +121,7 @@ int Run(const Arguments& arguments) {
   if (!arguments.seed.empty()) sets.push_back("seed=" + arguments.seed);
   if (!arguments.duration_s.empty()) sets.push_back("duration_s=" + arguments.duration_s);
   options.scenario = ReadScenario(arguments.scenario, sets);
-  if (arguments.robot != "twin") throw InputError("--robot", "this robot is not built in", "twin", "'" + arguments.robot + "'");
+  SetRobot(arguments.robot, options);
   options.out = arguments.out.empty() ? std::filesystem::path("runs") / fmt::format("{}-{}", options.name, options.scenario.seed)
                                       : std::filesystem::path(arguments.out);
   options.gl = GlOf(arguments.gl);
@@ -154,7 +167,8 @@ void AddRun(CLI::App& app, int& exit_code) {
   run->add_option("scenario", arguments->scenario, "a name in scenarios/, or a path")->required();
   run->add_option("--seed", arguments->seed, "of all randomness; default the scenario's")->check(WholeNumber);
   run->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-<seed>")->check(NotEmpty);
-  run->add_option("--robot", arguments->robot, "twin");
+  run->add_option("--robot", arguments->robot,
+                  "twin (default); emulated: the twin behind the real drivers and protocols, in real time; or hardware:FILE, which names the car's devices");
   run->add_option("--pace", arguments->pace, "fast (default), real, or a factor of real time");
   run->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
   run->add_option("--threads", arguments->threads, "same bits for any number; default 2")->check(CLI::Range(1, 256));

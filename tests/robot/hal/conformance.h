@@ -22,6 +22,8 @@ class Rigged {
   virtual double wall_ahead_m() = 0;   // from base_link at the start
   virtual double start_yaw_rad() = 0;  // in the world
   virtual double compass_sigma_rad() = 0;
+  // How late threads and lines may make what happens; zero where time waits for the test.
+  virtual Duration slack() { return Duration(0); }
 };
 
 struct Plug {

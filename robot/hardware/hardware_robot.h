@@ -1,0 +1,71 @@
+// The real car as the stack sees it: its drivers together, each from its own config.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/hal/hal.h"
+#include "robot/hardware/color_capture.h"
+#include "robot/hardware/compass_3dm_driver.h"
+#include "robot/hardware/microcontroller_drive.h"
+#include "robot/hardware/real_clock.h"
+#include "robot/hardware/tof_camera.h"
+
+namespace merlin {
+
+// Which device is where: the file that `--robot hardware:FILE` names.
+struct HardwareConfig {
+  RealClockConfig clock;
+  MicrocontrollerConfig drive;
+  std::optional<Compass3dmConfig> compass;   // not listed: the car has none
+  TofCameraConfig depth;
+  std::optional<ColorCaptureConfig> color;
+};
+
+template <class Visitor>
+void Visit(Visitor& v, HardwareConfig& c) {
+  v("clock", c.clock);
+  v("drive", c.drive);
+  v("compass", c.compass);
+  v("depth", c.depth);
+  v("color", c.color);
+}
+
+// What the cameras are, and how they begin.
+struct HardwareCameras {
+  DepthCameraInfo depth;
+  DepthSettings depth_settings;
+  std::optional<ColorCameraInfo> color{};
+  ColorSettings color_settings{};
+};
+
+class HardwareRobot {
+ public:
+  // Opens every device; throws InputError or MachineError, one sentence, for the first that cannot be used: nothing has
+  // moved then. When the stack stalls, the watchdog of the clock brakes the car. clock outlives this.
+  HardwareRobot(const HardwareConfig& config, const HardwareCameras& cameras, RealClock& clock);
+  ~HardwareRobot();
+
+  Robot robot();
+  // Until every device has delivered, at most limit; then what is wrong with each that has not, one sentence each.
+  std::vector<std::string> WaitUntilReady(Duration limit);
+
+ private:
+  RealClock& clock_;
+  MicrocontrollerDrive drive_;
+  std::optional<Compass3dmDriver> compass_;
+  std::optional<TofCamera> depth_;
+  std::optional<ColorCapture> color_;
+};
+
+// One device: opened, listened to, closed again.
+struct DeviceReport {
+  std::string device;     // "drive", "compass", "depth camera", "colour camera"
+  std::string complaint;  // one sentence; empty: it works
+};
+// For `merlin doctor`: every device by itself, so that each is told, not the first alone. Moves nothing.
+std::vector<DeviceReport> CheckDevices(const HardwareConfig& config, const HardwareCameras& cameras, Duration listen);
+
+}  // namespace merlin
