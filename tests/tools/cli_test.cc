@@ -125,6 +125,13 @@ TEST(Cli, RefusesBadScenariosRoomsAndCamerasWithExitTwo) {
   ExpectRefused("run corridor_short --set car.start.y_m=0 --set room=bare.xml --set checks.laps_min=1", "plan_xy_m", folder.path());
   std::ofstream(folder.path() / "broken.urdf") << "<robot name='x'>\n<link name='base_link'>\n</robot>\n";
   ExpectRefused("run corridor_short --set car.model=broken.urdf", "broken.urdf:", folder.path());
+  std::ofstream(folder.path() / "mapped.urdf") << "<robot name='x'><link name='base_link'/></robot>\n";
+  std::ofstream(folder.path() / "mapped.mapping.yaml") << "compas_frame: base_link\n";
+  ExpectRefused("run corridor_short --set car.model=mapped.urdf", "did you mean 'compass_frame'", folder.path());
+  std::ofstream(folder.path() / "body.stl") << "no mesh";
+  std::ofstream(folder.path() / "meshed.urdf") << "<robot name='x'><link name='base_link'><visual><geometry><mesh filename='body.stl'/>"
+                                                  "</geometry></visual></link></robot>\n";
+  ExpectRefused("run corridor_short --set car.model=meshed.urdf", "body.stl: not a mesh", folder.path());
   std::ofstream(folder.path() / "broken.yaml") << "room: hall\nsensors: {depth: {camera: pmd_3k_s}\n";
   ExpectRefused("run broken.yaml", "broken.yaml:", folder.path());
 }

@@ -254,7 +254,7 @@ def compass():
     for x in (-0.026, 0.026):
         for y in (-0.026, 0.026):
             screws += rod(0.003, 0.0775, 0.0800, "z", (x, y, 0), 8, 0.0005)
-    screws += rod(0.005, -0.040, -0.031, "x", (0, 0.012, 0.068), 12, 0.0005)  # plug
+    screws += rod(0.005, -0.0345, -0.031, "x", (0, 0.012, 0.068), 12, 0.0005)  # plug
     return [("rod", ALUMINIUM, metal), ("housing", (0.12, 0.13, 0.16), housing), ("screws", DARK, screws), ("label", LAMP, label)]
 
 
