@@ -71,40 +71,6 @@ TEST(Cli, RefusesBadUsageWithExitTwo) {
   ExpectRefused("list planets", "planets", folder.path());
 }
 
-TEST(Cli, RefusesToCalibrateFromNothingUsable) {
-  const TemporaryFolder folder;
-  ExpectRefused("calibrate", "subcommand", folder.path());
-  ExpectRefused("calibrate odometry", "what is it to calibrate from?", folder.path());
-  ExpectRefused("calibrate odometry no.yaml --study", "several", folder.path());
-  ExpectRefused("calibrate odometry no.yaml", "no.yaml: cannot be read", folder.path());
-  ExpectRefused("calibrate odometry --robot moon", "--robot", folder.path());
-  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.wheel_radius=1", "wheel_radius_factor", folder.path());
-  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=nan", "wheel_radius_factor",
-                folder.path());
-  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.surface=floor_ice", "floor_tiles", folder.path());
-  std::ofstream(folder.path() / "d.yaml") << "straights: [{encoder_counts: 74112, distance_m: 5.0}]\n"
-                                             "circles: [{steering_rad: 0.2, diameter_m: 3.2}]\n";
-  ExpectRefused("calibrate odometry d.yaml", "d.yaml: too few drives", folder.path());
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "calibration.yaml"));
-  ExpectRefused("run corridor_short --set car.calibration=no.yaml", "no.yaml: cannot be read", folder.path());
-}
-
-TEST(Cli, CalibratesTheTwinToAFileThatAScenarioTakes) {
-  const TemporaryFolder folder;
-  const Outcome outcome = Merlin("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=0.97", folder.path());
-  EXPECT_EQ(outcome.code, 0) << outcome.said;
-  const Outcome run = Merlin("run corridor_short --gl off --duration 1 --set checks={} --set car.calibration=calibration.yaml "
-                             "--set car.drivetrain.wheel_radius_factor=0.97", folder.path());
-  EXPECT_EQ(run.code, 0) << run.said;
-}
-
-TEST(Cli, TellsHowFastThePhysicsIs) {
-  const TemporaryFolder folder;
-  const Outcome outcome = Merlin("bench physics --json", folder.path());
-  EXPECT_EQ(outcome.code, 0) << outcome.said;
-  EXPECT_NE(outcome.said.find("\"times_real_time\": "), std::string::npos) << outcome.said;
-}
-
 TEST(Cli, RefusesBadScenariosRoomsAndCamerasWithExitTwo) {
   const TemporaryFolder folder;
   ExpectRefused("run corridor_short --set room=corridor_26x22", "corridor_26x21", folder.path());

@@ -1,0 +1,74 @@
+// `merlin calibrate` and `merlin bench physics` as their users meet them.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/scenarios/judge/temporary_folder.h"
+
+namespace merlin {
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string said;  // both streams
+};
+
+// The binary under test with these arguments, run in a folder.
+Outcome Merlin(const std::string& arguments, const std::filesystem::path& folder) {
+  const std::string command = "cd '" + folder.string() + "' && '" MERLIN_BINARY "' " + arguments + " 2>&1";
+  Outcome outcome;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 4096> buffer;
+  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) outcome.said.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return outcome;
+}
+
+void ExpectRefused(const std::string& arguments, const std::string& part, const std::filesystem::path& folder) {
+  const Outcome outcome = Merlin(arguments, folder);
+  EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.said;
+  EXPECT_NE(outcome.said.find(part), std::string::npos) << arguments << "\n" << outcome.said;
+}
+
+TEST(CalibrateCli, RefusesToCalibrateFromNothingUsable) {
+  const TemporaryFolder folder;
+  ExpectRefused("calibrate", "subcommand", folder.path());
+  ExpectRefused("calibrate odometry", "what is it to calibrate from?", folder.path());
+  ExpectRefused("calibrate odometry no.yaml --study", "several", folder.path());
+  ExpectRefused("calibrate odometry no.yaml", "no.yaml: cannot be read", folder.path());
+  ExpectRefused("calibrate odometry --robot moon", "--robot", folder.path());
+  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.wheel_radius=1", "wheel_radius_factor", folder.path());
+  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=nan", "wheel_radius_factor",
+                folder.path());
+  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.surface=floor_ice", "floor_tiles", folder.path());
+  std::ofstream(folder.path() / "d.yaml") << "straights: [{encoder_counts: 74112, distance_m: 5.0}]\n"
+                                             "circles: [{steering_rad: 0.2, diameter_m: 3.2}]\n";
+  ExpectRefused("calibrate odometry d.yaml", "d.yaml: too few drives", folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "calibration.yaml"));
+  ExpectRefused("run corridor_short --set car.calibration=no.yaml", "no.yaml: cannot be read", folder.path());
+}
+
+TEST(CalibrateCli, CalibratesTheTwinToAFileThatAScenarioTakes) {
+  const TemporaryFolder folder;
+  const Outcome outcome = Merlin("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=0.97", folder.path());
+  EXPECT_EQ(outcome.code, 0) << outcome.said;
+  const Outcome run = Merlin("run corridor_short --gl off --duration 1 --set checks={} --set car.calibration=calibration.yaml "
+                             "--set car.drivetrain.wheel_radius_factor=0.97", folder.path());
+  EXPECT_EQ(run.code, 0) << run.said;
+}
+
+TEST(BenchCli, TellsHowFastThePhysicsIs) {
+  const TemporaryFolder folder;
+  const Outcome outcome = Merlin("bench physics --json", folder.path());
+  EXPECT_EQ(outcome.code, 0) << outcome.said;
+  EXPECT_NE(outcome.said.find("\"times_real_time\": "), std::string::npos) << outcome.said;
+}
+
+}  // namespace
+}  // namespace merlin
