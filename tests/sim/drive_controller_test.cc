@@ -43,7 +43,7 @@ TEST(DriveAtRest, StandsStillForAMinuteAfterItHasDriven) {
   const Pose start = world->T_world_base();
   StepFor(*world, 60.0);
   EXPECT_LT((world->T_world_base().translation() - start.translation()).norm(), 1e-3);
-  EXPECT_EQ(MotorVolts(*world), 0.0);
+  EXPECT_LE(std::abs(MotorVolts(*world)), 0.3);  // nothing, or one count put right
 }
 
 // Statics: a stalled motor draws V/R, and the wall takes its torque times the gear over the wheel's radius.

@@ -105,6 +105,7 @@ Eigen::AlignedBox3d Surroundings(const Mujoco& world) {
     const Eigen::Vector3d half = R.cwiseAbs() * Eigen::Vector3d(world.model->geom_aabb + 6 * g + 3);
     box.extend(Eigen::AlignedBox3d(centre - half, centre + half));
   }
+  if (box.isEmpty()) box.extend(Eigen::AlignedBox3d(Eigen::Vector3d(-5, -5, 0), Eigen::Vector3d(5, 5, 2)));  // only planes
   box.min().z() = 0.02;
   box.max().z() = 2.0;
   return box;
