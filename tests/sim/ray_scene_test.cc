@@ -208,7 +208,10 @@ void ExpectAgreement(const Mujoco& world, const RayScene& scene, const std::stri
     }
   }
   EXPECT_GE(flat_exact, 0.999 * flat) << name;
-  EXPECT_GE(flat + curved, kOrigins * kRays / 2) << name;
+  // In a room half of the rays meet something at least; over a bare floor those that go down, but for the flattest.
+  const bool bare = std::all_of(world.model->geom_type, world.model->geom_type + world.model->ngeom,
+                                [](int type) { return type == mjGEOM_PLANE; });
+  EXPECT_GE(flat + curved, (bare ? 0.45 : 0.5) * kOrigins * kRays) << name;
   testing::Test::RecordProperty(name, std::to_string(flat) + " flat, " + std::to_string(flat - flat_exact) +
                                           " at edges, " + std::to_string(curved) + " curved");
 }
