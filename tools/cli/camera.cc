@@ -24,7 +24,8 @@ namespace merlin::cli {
 namespace {
 
 struct Arguments {
-  std::string model, room, pose, curtain, frequency_mhz, effects, out, study;
+  std::string model, room, pose, curtain, out, study;
+  std::optional<std::string> frequency_mhz, effects;
   std::optional<double> wall_m, albedo, tilt_deg, integration_us, sun_w_m2_nm;
   int frames = 20, threads = 2;
   std::uint64_t seed = 1;
@@ -70,9 +71,9 @@ Pose ReadPose(const std::string& text) {
 DepthSettings SettingsOf(const Arguments& arguments, const DepthCameraSheet& sheet) {
   DepthSettings usual = NearestSettings(sheet, {}), asked = usual;
   if (arguments.integration_us) asked.integration_s = *arguments.integration_us * 1e-6;
-  if (!arguments.frequency_mhz.empty()) {
+  if (arguments.frequency_mhz) {
     const auto mhz =
-        Numbers("--frequency-mhz", arguments.frequency_mhz, '+', 1, 2, "one frequency, or two as in 20+30");
+        Numbers("--frequency-mhz", *arguments.frequency_mhz, '+', 1, 2, "one frequency, or two as in 20+30");
     asked.frequency_hz = mhz[0] * 1e6;
     if (mhz.size() == 2) asked.second_frequency_hz = mhz[1] * 1e6;
   }
@@ -100,7 +101,7 @@ void RefuseMixtures(const Arguments& a) {
   if (study) {
     refuse(wall || room, "--wall or --room", "a single measurement; a study brings its own scenes");
     refuse(a.sun_w_m2_nm.has_value(), "--sun", "a single measurement; a study brings its own scenes");
-    refuse(!a.effects.empty(), "--effects", "a single measurement; a study brings its own effects");
+    refuse(a.effects.has_value(), "--effects", "a single measurement; a study brings its own effects");
   } else if (wall == room) {
     throw InputError("camera", "what is it to look at?", "either --wall or --room", wall ? "both" : "neither");
   }
@@ -169,7 +170,7 @@ int Camera(const Arguments& arguments) {
   const std::filesystem::path file = CameraFile(arguments.model);
   Shooting shooting{
       .sheet = ReadDepthCameraSheet(file), .errors = ReadDepthCameraErrors(file), .settings = {}, .effects = {}};
-  const std::string effects = arguments.effects.empty() ? "all" : arguments.effects;
+  const std::string effects = arguments.effects.value_or("all");
   shooting.effects = sim::ParseTofEffects(effects);
   shooting.settings = SettingsOf(arguments, shooting.sheet);
   shooting.seed = arguments.seed;
