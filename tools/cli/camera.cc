@@ -209,7 +209,7 @@ void AddCamera(CLI::App& app, int& exit_code) {
   camera->add_option("--sun", a->sun_w_m2_nm, "W/m2/nm at 870 nm: on the wall, or the room's sun");
   camera->add_option("--effects", a->effects, "all (default), raw, ideal, or names: noise,adc or -noise");
   camera->add_flag("--nearest", a->nearest, "take the nearest valid settings instead of refusing");
-  camera->add_option("--seed", a->seed, "of the noise; default 1");
+  camera->add_option("--seed", a->seed, "of the noise; default 1")->check(WholeNumber);
   camera->add_option("--threads", a->threads, "same bits for any number; default 2")->check(CLI::Range(1, 256));
   camera->add_option("--out", a->out, "folder for the files; default runs/camera-<model>");
   camera->add_option(

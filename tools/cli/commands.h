@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <string>
 
 namespace merlin::cli {
 
@@ -18,5 +19,11 @@ void AddCalibrate(CLI::App& app, int& exit_code);
 void AddBench(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddDoctor(CLI::App& app, int& exit_code);
+
+// Whether a text is one, for CLI11's check: what is wrong, or nothing.
+inline std::string WholeNumber(const std::string& text) {
+  const bool whole = !text.empty() && text.size() <= 20 && text.find_first_not_of("0123456789") == std::string::npos;
+  return whole ? "" : "expected a whole number from 0 on, got '" + text + "'";
+}
 
 }  // namespace merlin::cli

@@ -152,11 +152,6 @@ int Run(const Arguments& arguments) {
 
 namespace {
 
-std::string WholeNumber(const std::string& text) {
-  const bool whole = !text.empty() && text.size() <= 20 && text.find_first_not_of("0123456789") == std::string::npos;
-  return whole ? "" : "expected a whole number from 0 on, got '" + text + "'";
-}
-
 std::string NotEmpty(const std::string& text) { return text.empty() ? "expected a value, got nothing" : ""; }
 
 }  // namespace
