@@ -20,7 +20,7 @@ RunReport Drive(RobotKind robot, const std::filesystem::path& out, const std::ve
                       .out = out,
                       .robot = robot,
                       .hardware_file = {},
-                      .gl = sim::Gl::kAuto,
+                      .gl = sim::Gl::kOff,  // drawing in software beside the run would ask a slow machine for too much
                       .threads = 2,
                       .pace = 0.0,
                       .progress = {}},
