@@ -191,11 +191,11 @@ void World::Step() {
   // current.
   mj_step2(model_.get(), data_.get());
   mj_step1(model_.get(), data_.get());
-  drive_.Follow(model_.get(), data_.get());
   for (int i = 0; i < mjNWARNING; ++i)
     if (data_->warning[i].number > 0)
       throw std::runtime_error(
           fmt::format("MuJoCo stopped at {:.3f} s: {}", data_->time, mju_warningText(i, data_->warning[i].lastinfo)));
+  drive_.Follow(model_.get(), data_.get());  // only a sound state has counts
 }
 
 Time World::Now() const { return std::llround(data_->time / Seconds(kStep)) * kStep; }
