@@ -1,5 +1,9 @@
 #include "sim/color_response.h"
 
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -40,6 +44,18 @@ std::array<float, kQuantiles> NormalTable() {
     table[kQuantiles / 2 - 1 - i] = static_cast<float>(-scale * upper[i]);
   }
   return table;
+}
+
+// table[index], eight at a time where the processor can.
+template <std::size_t kCount>
+void LookUp(const float* table, const std::array<int, kCount>& index, float* out) {
+#ifdef __AVX2__
+  static_assert(kCount % 8 == 0);
+  for (std::size_t i = 0; i < kCount; i += 8)
+    _mm256_storeu_ps(out + i, _mm256_i32gather_ps(table, _mm256_load_si256(reinterpret_cast<const __m256i*>(&index[i])), 4));
+#else
+  for (std::size_t i = 0; i < kCount; ++i) out[i] = table[index[i]];
+#endif
 }
 
 std::array<std::uint8_t, kSteps> CodeTable() {
@@ -98,9 +114,10 @@ void ColorResponse::ExposeChunk(std::span<std::uint8_t, kChunk> values, std::siz
                                 const std::array<float, kChunk>& deviate) const {
   static const std::array<std::uint8_t, kSteps> code = CodeTable();
   const float *falloff = &falloff_[first], *steps_per_well = scale.steps_per_well.data();
-  std::array<float, kChunk> wells;
-  std::array<int, kChunk> step;
-  for (std::size_t i = 0; i < kChunk; ++i) wells[i] = scale.light_wells[values[i]];
+  alignas(32) std::array<float, kChunk> wells;
+  alignas(32) std::array<int, kChunk> step;
+  for (std::size_t i = 0; i < kChunk; ++i) step[i] = values[i];
+  LookUp(scale.light_wells.data(), step, wells.data());
   for (std::size_t i = 0; i < kChunk; ++i) {
     const float mean = wells[i] * falloff[i];
     const float sigma = std::sqrt(mean * scale.shot_variance_wells + scale.read_variance_wells);
@@ -115,17 +132,20 @@ void ColorResponse::Expose(std::span<std::uint8_t> bgr, const ColorSettings& set
   static const std::array<float, kQuantiles> normal = NormalTable();
   const Scale scale = ScaleOf(settings);
   const std::array<std::uint32_t, 2> key{static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)};
-  // The counter of sim/random.h; one block serves eight neighbouring values, 16 bits each.
+  // The counter of sim/random.h; eight blocks serve 64 neighbouring values, 16 bits each.
   const std::uint32_t purpose = static_cast<std::uint32_t>(Sensor::kColor) << 8 | (frame >> 32 & 0xFF);
   for (std::size_t first = 0; first < bgr.size(); first += kChunk) {
-    std::array<float, kChunk> deviate;
-    for (std::size_t part = 0; part < kChunk; part += 32) {
+    alignas(32) std::array<float, kChunk> deviate;
+    for (std::size_t part = 0; part < kChunk; part += 64) {
       const auto block = static_cast<std::uint32_t>((first + part) / 8);
-      const auto random = Philox4x32Quad({0, block, static_cast<std::uint32_t>(frame), purpose}, key);
-      for (std::size_t i = 0; i < 32; ++i) {
-        const std::uint32_t bits = random[i / 8][i % 8 / 2] >> (16 * (i % 2)) & 0xFFFF;
-        deviate[part + i] = normal[bits >> (16 - kQuantileBits)];
-      }
+      const PhiloxOctet random = Philox4x32Octet({0, block, static_cast<std::uint32_t>(frame), purpose}, key);
+      alignas(32) std::array<int, 64> index;
+      for (std::size_t word = 0; word < 4; ++word)
+        for (std::size_t i = 0; i < 8; ++i) {
+          index[16 * word + i] = static_cast<int>(random[word][i] >> 16 >> (16 - kQuantileBits));
+          index[16 * word + 8 + i] = static_cast<int>((random[word][i] & 0xFFFF) >> (16 - kQuantileBits));
+        }
+      LookUp(normal.data(), index, deviate.data() + part);
     }
     if (bgr.size() - first >= kChunk) {
       ExposeChunk(bgr.subspan(first).first<kChunk>(), first, scale, deviate);

@@ -26,7 +26,7 @@ class ColorResponse {
   void Expose(std::span<std::uint8_t> bgr, const ColorSettings& settings, std::uint64_t frame) const;
 
  private:
-  static constexpr int kChunk = 480;  // values dealt with at once: whole pixels, whole fours of random blocks
+  static constexpr int kChunk = 384;  // values dealt with at once: whole pixels, whole eights of random blocks
   struct Scale;
   Scale ScaleOf(const ColorSettings& settings) const;
   // first: index of the first value in the picture; deviate: normally distributed, by value.

@@ -92,6 +92,7 @@ void GlContext::OpenEgl() {
   const EglHandle context = create(display, config, nullptr, nullptr);
   Require(context != nullptr, "eglCreateContext (OpenGL)");
 
+  get_ = get_proc;
   // The API is bound per thread. The display is never terminated: every context of the process shares it.
   make_current_ = [=] {
     Require(bind_api(kEglOpenGlApi) && make_current(display, nullptr, nullptr, context), "eglMakeCurrent");
@@ -111,6 +112,7 @@ void GlContext::OpenOsmesa() {
 
   void* context = create(kOsmesaRgba, 24, 8, 0, nullptr);
   Require(context != nullptr, "OSMesaCreateContextExt");
+  get_ = get_proc;
   // OSMesa wants a colour buffer; the picture goes to MuJoCo's own, so one pixel is enough.
   const auto pixel = std::make_shared<std::array<std::uint8_t, 4>>();
   make_current_ = [=] { Require(make_current(context, pixel->data(), kGlUnsignedByte, 1, 1), "OSMesaMakeCurrent"); };

@@ -19,6 +19,8 @@ class GlContext {
 
   // "EGL: llvmpipe (LLVM 15.0.6, 256 bits)"
   const std::string& name() const { return name_; }
+  // A function of GL by its name; null: it has none such.
+  void* Get(const char* function) const { return get_(function); }
 
   // Holds the context current in the calling thread, for as long as it lives: a context is current in one thread at a
   // time, so whoever draws next may sit in another.
@@ -37,6 +39,7 @@ class GlContext {
   void OpenEgl();
   void OpenOsmesa();
 
+  std::function<void*(const char*)> get_;
   std::function<void()> make_current_;
   std::function<void()> release_ = [] {};
   std::function<void()> destroy_ = [] {};

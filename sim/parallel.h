@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <mutex>
-#include <thread>
-#include <vector>
 
 namespace merlin::sim {
+
+// Calls work on this thread and, as far as they are free, on up to others threads that wait for such calls (they stay for
+// the process' life: to start one takes as long as a small loop). Returns when all have returned. work must not throw.
+void OnSeveralThreads(int others, const std::function<void()>& work);
 
 // Calls work(i) once for each i in [0, count), on this thread and threads - 1 others. What a call throws comes out.
 template <class Work>
@@ -20,7 +23,7 @@ void ParallelFor(int count, int threads, const Work& work) {
   std::atomic<int> next{0};
   std::exception_ptr thrown;
   std::mutex thrown_mutex;
-  const auto take = [&] {
+  OnSeveralThreads(std::min(threads, count) - 1, [&] {
     try {
       for (int i = next++; i < count; i = next++) work(i);
     } catch (...) {
@@ -28,12 +31,7 @@ void ParallelFor(int count, int threads, const Work& work) {
       thrown = std::current_exception();
       next = count;
     }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (int t = 1; t < std::min(threads, count); ++t) others.emplace_back(take);
-    take();
-  }
+  });
   if (thrown) std::rethrow_exception(thrown);
 }
 

@@ -1,5 +1,9 @@
 #include "sim/random.h"
 
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include <cmath>
 #include <numbers>
 
@@ -27,29 +31,50 @@ std::array<std::uint32_t, 4> Philox4x32(std::array<std::uint32_t, 4> counter, st
   return counter;
 }
 
-std::array<std::array<std::uint32_t, 4>, 4> Philox4x32Quad(std::array<std::uint32_t, 4> counter,
-                                                           std::array<std::uint32_t, 2> key) {
-  std::array<std::array<std::uint32_t, 4>, 4> words;  // [word][block]: the compiler puts the blocks side by side
-  for (std::uint32_t block = 0; block < 4; ++block)
-    for (int word = 0; word < 4; ++word) words[word][block] = counter[word] + (word == 1 ? block : 0);
+#ifdef __AVX2__
+namespace {
+
+// Of eight 32-bit products, the low and the high words.
+struct Products {
+  __m256i low, high;
+};
+
+Products Multiply(__m256i a, __m256i multiplier) {
+  const __m256i even = _mm256_mul_epu32(a, multiplier), odd = _mm256_mul_epu32(_mm256_srli_epi64(a, 32), multiplier);
+  return {_mm256_blend_epi32(even, _mm256_slli_epi64(odd, 32), 0xAA),
+          _mm256_blend_epi32(_mm256_srli_epi64(even, 32), odd, 0xAA)};
+}
+
+}  // namespace
+
+PhiloxOctet Philox4x32Octet(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key) {
+  const auto all = [](std::uint32_t word) { return _mm256_set1_epi32(static_cast<int>(word)); };
+  __m256i w0 = all(counter[0]), w1 = _mm256_add_epi32(all(counter[1]), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)),
+          w2 = all(counter[2]), w3 = all(counter[3]);
   for (int round = 0; round < kRounds; ++round) {
-    for (int block = 0; block < 4; ++block) {
-      const std::uint64_t product0 = std::uint64_t{kMultiplier0} * words[0][block];
-      const std::uint64_t product1 = std::uint64_t{kMultiplier1} * words[2][block];
-      const std::uint32_t word1 = words[1][block], word3 = words[3][block];
-      words[0][block] = static_cast<std::uint32_t>(product1 >> 32) ^ word1 ^ key[0];
-      words[1][block] = static_cast<std::uint32_t>(product1);
-      words[2][block] = static_cast<std::uint32_t>(product0 >> 32) ^ word3 ^ key[1];
-      words[3][block] = static_cast<std::uint32_t>(product0);
-    }
+    const Products product0 = Multiply(w0, all(kMultiplier0)), product1 = Multiply(w2, all(kMultiplier1));
+    w0 = _mm256_xor_si256(_mm256_xor_si256(product1.high, w1), all(key[0]));
+    w2 = _mm256_xor_si256(_mm256_xor_si256(product0.high, w3), all(key[1]));
+    w1 = product1.low;
+    w3 = product0.low;
     key[0] += kWeyl0;
     key[1] += kWeyl1;
   }
-  std::array<std::array<std::uint32_t, 4>, 4> blocks;
-  for (int block = 0; block < 4; ++block)
-    for (int word = 0; word < 4; ++word) blocks[block][word] = words[word][block];
-  return blocks;
+  PhiloxOctet words;
+  const __m256i of[4] = {w0, w1, w2, w3};
+  for (int word = 0; word < 4; ++word) _mm256_storeu_si256(reinterpret_cast<__m256i*>(words[word].data()), of[word]);
+  return words;
 }
+#else
+PhiloxOctet Philox4x32Octet(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key) {
+  PhiloxOctet words;
+  for (std::size_t i = 0; i < 8; ++i, ++counter[1]) {
+    const std::array<std::uint32_t, 4> block = Philox4x32(counter, key);
+    for (std::size_t word = 0; word < 4; ++word) words[word][i] = block[word];
+  }
+  return words;
+}
+#endif
 
 Random::Random(std::uint64_t seed, Sensor sensor, std::uint64_t frame, std::uint32_t pixel, std::uint16_t purpose)
     : counter_{0, pixel, static_cast<std::uint32_t>(frame),
@@ -67,15 +92,12 @@ double Random::Uniform() {
 }
 
 double Random::Normal() {
-  if (has_spare_) {
-    has_spare_ = false;
-    return spare_normal_;
-  }
+  if (ready_ > 0) return normals_[--ready_];
   // Box and Muller, "A note on the generation of random normal deviates", Ann. Math. Stat. 29 (1958). |value| < 6.7.
   const double radius = std::sqrt(-2.0 * std::log(Uniform()));
   const double angle = 2.0 * std::numbers::pi * Uniform();
-  spare_normal_ = radius * std::sin(angle);
-  has_spare_ = true;
+  normals_[0] = radius * std::sin(angle);
+  ready_ = 1;
   return radius * std::cos(angle);
 }
 

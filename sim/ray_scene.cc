@@ -191,10 +191,11 @@ struct Lanes {
   alignas(32) int valid[kPacket];
 };
 
-RTCIntersectContext CoherentContext() {
+// coherent: rays of one place and neighbouring directions, which go down the hierarchy together.
+RTCIntersectContext Context(bool coherent) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   return context;
 }
 
@@ -299,7 +300,7 @@ void RayScene::Update(const BodyMotions& bodies, double dt_s) { impl_->Update(bo
 
 void RayScene::Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes) const {
   assert(rays.size() == hits.size());
-  RTCIntersectContext context = CoherentContext();
+  RTCIntersectContext context = Context(true);
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const std::span<const Ray> some = rays.subspan(first, std::min<std::size_t>(kPacket, rays.size() - first));
     const Lanes lanes(some.size());
@@ -315,7 +316,7 @@ void RayScene::Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes pan
 
 void RayScene::Occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Panes panes) const {
   assert(rays.size() == blocked.size());
-  RTCIntersectContext context = CoherentContext();
+  RTCIntersectContext context = Context(false);
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const std::span<const Ray> some = rays.subspan(first, std::min<std::size_t>(kPacket, rays.size() - first));
     const Lanes lanes(some.size());

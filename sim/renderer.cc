@@ -1,5 +1,9 @@
 #include "sim/renderer.h"
 
+#ifdef __SSSE3__
+#include <immintrin.h>
+#endif
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -111,6 +115,25 @@ void RenderSnapshot::Look(const Pose& T_world_camera, const CameraModel& camera)
   scene.camera[0] = scene.camera[1] = GlCamera(T_world_camera, camera);  // MuJoCo draws from the mean of the two
 }
 
+namespace {
+
+using ReadPixels = void (*)(int x, int y, int width, int height, unsigned format, unsigned type, void* pixels);
+constexpr unsigned kGlRgba = 0x1908, kGlUnsignedByte = 0x1401;  // of GL's registry
+
+void BgrOfRgba(const std::uint8_t* rgba, std::size_t pixels, std::uint8_t* bgr) {
+  std::size_t i = 0;
+#ifdef __SSSE3__
+  const __m128i order = _mm_setr_epi8(2, 1, 0, 6, 5, 4, 10, 9, 8, 14, 13, 12, -1, -1, -1, -1);
+  for (; i + 6 <= pixels; i += 4)  // writes 16 bytes for 12: the rest comes next
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(bgr + 3 * i),
+                     _mm_shuffle_epi8(_mm_loadu_si128(reinterpret_cast<const __m128i*>(rgba + 4 * i)), order));
+#endif
+  for (; i < pixels; ++i)
+    for (std::size_t c = 0; c < 3; ++c) bgr[3 * i + c] = rgba[4 * i + 2 - c];
+}
+
+}  // namespace
+
 struct Renderer::Impl {
   explicit Impl(Gl gl) : context(gl) { mjr_defaultContext(&mjr); }
   ~Impl() {
@@ -120,7 +143,8 @@ struct Renderer::Impl {
   GlContext context;
   mjrContext mjr;
   mjrRect viewport{};
-  std::vector<std::uint8_t> rgb;
+  std::vector<std::uint8_t> rgba;
+  ReadPixels read_pixels = nullptr;
 };
 
 Renderer::Renderer(const mjModel* model, const CameraModel& camera, Gl gl) {
@@ -132,7 +156,9 @@ Renderer::Renderer(const mjModel* model, const CameraModel& camera, Gl gl) {
   copy->vis.quality.shadowsize = 0;
   impl_ = std::make_unique<Impl>(gl);
   impl_->viewport = {0, 0, camera.width, camera.height};
-  impl_->rgb.resize(static_cast<std::size_t>(camera.width) * camera.height * 3);
+  impl_->rgba.resize(static_cast<std::size_t>(camera.width) * camera.height * 4);
+  impl_->read_pixels = reinterpret_cast<ReadPixels>(impl_->context.Get("glReadPixels"));
+  if (impl_->read_pixels == nullptr) throw MachineError(name() + " has no glReadPixels");
   const GlContext::Current current(impl_->context);
   mjr_makeContext(copy.get(), &impl_->mjr, mjFONTSCALE_100);
   mjr_setBuffer(mjFB_OFFSCREEN, &impl_->mjr);
@@ -150,18 +176,13 @@ void Renderer::Draw(RenderSnapshot& snapshot, std::span<std::uint8_t> bgr) {
   const GlContext::Current current(impl.context);
   mjr_setBuffer(mjFB_OFFSCREEN, &impl.mjr);
   mjr_render(impl.viewport, &snapshot.scene, &impl.mjr);
-  mjr_readPixels(impl.rgb.data(), nullptr, impl.viewport, &impl.mjr);
-  // GL has the lowest row first, and RGB.
+  // As the buffer has them: MuJoCo's own reading asks for three bytes a pixel, and Mesa then converts one by one.
   const int width = impl.viewport.width, height = impl.viewport.height;
-  for (int row = 0; row < height; ++row) {
-    const std::uint8_t* from = impl.rgb.data() + static_cast<std::size_t>(height - 1 - row) * width * 3;
-    std::uint8_t* to = bgr.data() + static_cast<std::size_t>(row) * width * 3;
-    for (int i = 0; i < 3 * width; i += 3) {
-      to[i] = from[i + 2];
-      to[i + 1] = from[i + 1];
-      to[i + 2] = from[i];
-    }
-  }
+  impl.read_pixels(0, 0, width, height, kGlRgba, kGlUnsignedByte, impl.rgba.data());
+  const std::size_t pixels = static_cast<std::size_t>(width);
+  for (std::size_t row = 0; row < static_cast<std::size_t>(height); ++row)  // GL has the lowest row first
+    BgrOfRgba(impl.rgba.data() + (static_cast<std::size_t>(height) - 1 - row) * pixels * 4, pixels,
+              bgr.data() + row * pixels * 3);
 }
 
 }  // namespace merlin::sim

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "sim/lanes.h"
 #include "sim/parallel.h"
@@ -81,6 +80,7 @@ MidHits TraceMid(const RayScene& scene, const Optics& optics, const Pose& T_worl
   const Eigen::Vector3f origin = T_world_camera.translation().cast<float>();
   ParallelFor(optics.height, threads, [&](int v) {
     std::vector<std::size_t> traced;
+    traced.reserve(static_cast<std::size_t>(grid.edge * grid.width));
     for (int y = v * grid.edge; y < (v + 1) * grid.edge; ++y) {
       for (int x = 0; x < grid.width; ++x) {
         const std::size_t i = grid.SubRay(x, y);
@@ -116,10 +116,11 @@ void RowHits::Resize(std::size_t n) {
 FramePlan PlanFrame(const Optics& optics, const MidHits& mid, std::span<const std::uint8_t> calm) {
   const std::size_t n = static_cast<std::size_t>(optics.per_pixel), width = static_cast<std::size_t>(optics.width);
   FramePlan plan;
-  std::set<int> faces;
+  std::vector<std::uint8_t> seen;  // [face]
   for (std::size_t v = 0; v < static_cast<std::size_t>(optics.height); ++v) {
     const std::size_t first = v * width * n;
     FramePlan::Row& row = plan.rows.emplace_back();
+    row.traced.reserve(n * width);
     for (std::size_t s = 0; s < n && !calm.empty(); ++s) {
       for (std::size_t at = s * width; at < (s + 1) * width; ++at) {
         if (!calm[first + at]) continue;
@@ -129,14 +130,17 @@ FramePlan PlanFrame(const Optics& optics, const MidHits& mid, std::span<const st
           continue;
         }
         row.calm.push_back({at, at + 1, hit.face, hit.geom});
-        if (hit.face >= 0) faces.insert(hit.face);
+        if (hit.face < 0) continue;
+        if (static_cast<std::size_t>(hit.face) >= seen.size()) seen.resize(static_cast<std::size_t>(hit.face) + 1);
+        seen[static_cast<std::size_t>(hit.face)] = 1;
       }
     }
     for (std::size_t u = 0; u < width; ++u)
       for (std::size_t at = u; at < n * width; at += width)
         if (calm.empty() || !calm[first + at]) row.traced.push_back(at);
   }
-  plan.faces.assign(faces.begin(), faces.end());
+  for (std::size_t face = 0; face < seen.size(); ++face)
+    if (seen[face]) plan.faces.push_back(static_cast<int>(face));
   return plan;
 }
 

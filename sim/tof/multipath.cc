@@ -14,6 +14,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kClear_m = 1e-3f;
+constexpr float kFaint = 2e-3f;  // of what comes from all lights: no ray asks whether so faint a one is hidden
 constexpr float kSameNormal = 0.95f, kSamePlane_m = 0.05f;
 
 // What the lamp lights, as lamps themselves; world frame.
@@ -70,11 +71,20 @@ Lights LightsOf(const RayScene& scene, const Optics& optics, const Pose& T_world
   return lights;
 }
 
+// Room to work in.
+struct Ways {
+  std::vector<float> distance_m, electrons, phase, sine, cosine;  // [light]
+  std::vector<Ray> rays;
+  std::vector<std::size_t> of;  // [ray] its light
+  std::vector<std::uint8_t> blocked;
+};
+
 // Sum over the lights that reach a point: form factor of a disc, cos cos / (r^2 + A / pi) (Hanrahan's approximation).
 Phasors Gather(const RayScene& scene, const Lights& lights, const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
-               float wave_number) {
+               float wave_number, Ways& ways) {
   const std::size_t count = lights.power.size();
-  std::vector<float> distance_m(count), electrons(count), phase(count), sine(count), cosine(count);
+  auto& [distance_m, electrons, phase, sine, cosine, rays, of, blocked] = ways;
+  for (std::vector<float>* of_lights : {&distance_m, &electrons, &phase, &sine, &cosine}) of_lights->resize(count);
   {
     const float px = point.x(), py = point.y(), pz = point.z(), nx = normal.x(), ny = normal.y(), nz = normal.z();
     const float *x = lights.x.data(), *y = lights.y.data(), *z = lights.z.data();
@@ -92,20 +102,26 @@ Phasors Gather(const RayScene& scene, const Lights& lights, const Eigen::Vector3
       turn[i] = wave_number * 0.5f * (range_m[i] + distance[i]);
     }
   }
-  std::vector<Ray> rays;
-  std::vector<std::size_t> of;
+  SinCos(phase, sine, cosine);
+  float unblocked_e = 0.0f;
+  for (const float light_e : electrons) unblocked_e += light_e;
+  Phasors sum;
+  rays.clear();
+  of.clear();
   for (std::size_t i = 0; i < count; ++i) {
     if (electrons[i] <= 0.0f) continue;
+    if (electrons[i] < kFaint * unblocked_e) {
+      sum.Add(electrons[i], cosine[i], sine[i]);
+      continue;
+    }
     const Eigen::Vector3f way = Eigen::Vector3f(lights.x[i], lights.y[i], lights.z[i]) - point;
     rays.push_back({.origin = point + kClear_m * normal,
                     .direction = way / distance_m[i],
                     .max_range_m = distance_m[i] - 5.0f * kClear_m});
     of.push_back(i);
   }
-  std::vector<std::uint8_t> blocked(rays.size());
+  blocked.resize(rays.size());
   scene.Occluded(rays, blocked, Panes::kLookedThrough);
-  SinCos(phase, sine, cosine);
-  Phasors sum;
   for (std::size_t r = 0; r < rays.size(); ++r)
     if (!blocked[r]) sum.Add(electrons[of[r]], cosine[of[r]], sine[of[r]]);
   return sum;
@@ -199,12 +215,13 @@ std::vector<Phasors> OneBounce(const RayScene& scene, const Optics& optics, cons
   const Lights lights = LightsOf(scene, optics, mid.T_world_camera, albedo, grid);
   ReceiverGrid receivers(optics, grid);
   ParallelFor(receivers.rows, threads, [&](int j) {
+    Ways ways;
     for (int i = 0; i < receivers.columns; ++i) {
       const std::size_t middle = optics.Middle(receivers.PixelOf(i, j, optics));
       if (mid.hits[middle].geom < 0) continue;
       const Eigen::Vector3f point = mid.Point(middle), normal = mid.hits[middle].normal;
       receivers.receivers[static_cast<std::size_t>(j * receivers.columns + i)] = {
-          point, normal, mid.hits[middle].geom, Gather(scene, lights, point, normal, wave_number)};
+          point, normal, mid.hits[middle].geom, Gather(scene, lights, point, normal, wave_number, ways)};
     }
   });
   std::vector<Phasors> bounce(optics.pixels());
@@ -224,8 +241,9 @@ std::vector<Phasors> OneBounce(const RayScene& scene, const Optics& optics, cons
   for (std::size_t pixel = 0; pixel < as.size(); ++pixel)
     if (alone[pixel] && as[pixel] == pixel) own.push_back(pixel);
   ParallelFor(static_cast<int>(own.size()), threads, [&](int k) {
+    Ways ways;
     const std::size_t pixel = own[static_cast<std::size_t>(k)], middle = optics.Middle(pixel);
-    bounce[pixel] = Gather(scene, lights, mid.Point(middle), mid.hits[middle].normal, wave_number);
+    bounce[pixel] = Gather(scene, lights, mid.Point(middle), mid.hits[middle].normal, wave_number, ways);
   });
   for (std::size_t pixel = 0; pixel < as.size(); ++pixel) bounce[pixel] = bounce[as[pixel]];
   return bounce;

@@ -6,11 +6,17 @@
 #include <span>
 #include <utility>
 
+#include "sim/normal_row.h"
 #include "sim/parallel.h"
 #include "sim/tof/decode.h"
 #include "sim/tof/light.h"
 
 namespace merlin::sim {
+namespace {
+
+constexpr std::uint16_t kNormals = 1;  // purpose of the taps' Gaussian noise; few electrons draw from purpose 0
+
+}  // namespace
 
 struct TofCamera::Impl {
   DepthCameraSheet sheet;
@@ -55,12 +61,19 @@ DepthFrame TofCamera::Expose(const TofView& view, const DepthSettings& settings,
   DepthFrame frame = decoder.EmptyFrame(stamp, index);
   ParallelFor(frame.height, my.threads, [&](int v) {
     const std::size_t width = static_cast<std::size_t>(frame.width), first = static_cast<std::size_t>(v) * width;
+    // Two images' four taps a draw.
+    std::vector<NormalRow> normals(images.size() / 2, NormalRow(width));
+    for (std::size_t draw = 0; draw < normals.size(); ++draw)
+      normals[draw].Draw(my.seed, Sensor::kDepth, index, static_cast<std::uint32_t>(first), kNormals,
+                         static_cast<std::uint32_t>(draw));
     for (std::size_t pixel = first; pixel < first + width; ++pixel) {
       Random random(my.seed, Sensor::kDepth, index, static_cast<std::uint32_t>(pixel));
       std::array<Taps, 8> taps;
       bool lit = false;
       for (std::size_t k = 0; k < images.size(); ++k) {
         lit |= images[k].lit[pixel] != 0;
+        const NormalRow& normal = normals[k / 2];
+        random.Give(normal.of[k % 2 * 2][pixel - first], normal.of[k % 2 * 2 + 1][pixel - first]);
         taps[k] = my.chip.Expose({images[k].total_e[pixel], images[k].correlation_e[pixel]}, my.pattern.traits[pixel],
                                  settings.integration_s, random);
       }
