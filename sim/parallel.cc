@@ -1,5 +1,6 @@
 #include "sim/parallel.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <list>
 #include <thread>
@@ -8,10 +9,21 @@
 namespace merlin::sim {
 namespace {
 
+// The loops of a frame follow each other closely: a thread looks out for the next one this long before it sleeps. To be
+// woken takes as long as some loops, and may put it onto the caller's own core.
+constexpr std::chrono::microseconds kLookOut{100};
+
+template <class Condition>
+void LookOutFor(const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + kLookOut;
+  while (!condition() && std::chrono::steady_clock::now() < end) {
+  }
+}
+
 struct Call {
   const std::function<void()>* work;
-  int wanted;       // threads that may still join
-  int running = 0;  // that have joined and not returned
+  int wanted;                   // threads that may still join
+  std::atomic<int> running{0};  // that have joined and not returned
 };
 
 class Crew {
@@ -23,12 +35,17 @@ class Crew {
       while (static_cast<int>(threads_.size()) < others)
         threads_.emplace_back([this](const std::stop_token& stop) { Wait(stop); });
       calls_.push_back(&call);
+      waiting_ = static_cast<int>(calls_.size());
     }
-    if (others == 1) called_.notify_one();
-    else called_.notify_all();
+    called_.notify_all();
     work();
+    {
+      const std::lock_guard lock(mutex_);
+      calls_.remove(&call);  // whoever has not joined by now finds nothing left to do
+      waiting_ = static_cast<int>(calls_.size());
+    }
+    LookOutFor([&] { return call.running == 0; });
     std::unique_lock lock(mutex_);
-    calls_.remove(&call);  // whoever has not joined by now finds nothing left to do
     returned_.wait(lock, [&] { return call.running == 0; });
   }
 
@@ -38,17 +55,22 @@ class Crew {
     while (called_.wait(lock, stop, [&] { return !calls_.empty(); })) {
       Call& call = *calls_.front();
       if (--call.wanted == 0) calls_.pop_front();
+      waiting_ = static_cast<int>(calls_.size());
       ++call.running;
       lock.unlock();
       (*call.work)();
       lock.lock();
       if (--call.running == 0) returned_.notify_all();
+      lock.unlock();
+      LookOutFor([&] { return waiting_ > 0; });
+      lock.lock();
     }
   }
 
   std::mutex mutex_;
   std::condition_variable_any called_, returned_;
   std::list<Call*> calls_;
+  std::atomic<int> waiting_{0};        // calls that want more threads
   std::vector<std::jthread> threads_;  // last: stopped before what they wait for is gone
 };
 
