@@ -9,7 +9,7 @@ namespace {
 struct NormalEquations {
   Matrix6d H = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
-  int inliers = 0;
+  int pairs = 0, inliers = 0;
   double squares_m2 = 0.0;
 };
 
@@ -22,6 +22,7 @@ NormalEquations Linearize(std::span<const Point> points_base, const Eigen::Vecto
     const Eigen::Vector3f p_map = T * point.position;
     const Voxel* voxel = map.Nearest(p_map);
     if (voxel == nullptr) continue;
+    ++equations.pairs;
     const double residual_m = voxel->normal.dot(p_map - voxel->mean);
     const double squared_m2 = residual_m * residual_m;
     if (squared_m2 < 4.0 * kernel_m2) {
@@ -57,7 +58,7 @@ RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3
     NormalEquations equations = Linearize(points_base, origin_base, map, result.T_map_base, config);
     result.inliers = equations.inliers;
     if (equations.inliers < config.inliers_min) return result;
-    result.inlier_share = static_cast<double>(equations.inliers) / static_cast<double>(points_base.size());
+    result.inlier_share = static_cast<double>(equations.inliers) / equations.pairs;
     result.rms_m = std::sqrt(equations.squares_m2 / equations.inliers);
     equations.H += prior.information;
     equations.b += prior.information * Log(prior.T_map_base.inverse() * result.T_map_base);

@@ -18,7 +18,7 @@ struct IcpConfig {
   double map_sigma_m = 0.01;         // [0, 1] of the map's surface; guess
   double independent_share = 0.1;    // [0, 1] of pairs that carry information of their own: neighbours err alike; guess
   int inliers_min = 60;              // [6, 1e9] pairs within two kernels, below: not converged
-  double inlier_share_min = 0.3;     // [0, 1] of all points, below: not converged
+  double inlier_share_min = 0.3;     // [0, 1] of all pairs, below: not converged
 };
 
 template <class Visitor>
@@ -42,7 +42,7 @@ struct RegisterResult {
   Pose T_map_base = Pose::Identity();
   Matrix6d covariance = Matrix6d::Zero();  // over (translation, rotation) in the base frame
   int inliers = 0;
-  double inlier_share = 0.0;
+  double inlier_share = 0.0;  // of the points that meet the map: what is seen for the first time says nothing
   double rms_m = 0.0;  // of the inliers' point-to-plane distances
   int iterations = 0;
   bool converged = false;  // false: the pose is the last iterate and not to be trusted

@@ -102,6 +102,18 @@ TEST(Icp, HoldsAgainstThreeTenthsOfThePointsBeingSomethingElse) {
   EXPECT_LT((result.T_map_base.translation() - T_map_base.translation()).norm(), 0.012);
 }
 
+// Around a corner a frame shows far more that is new than what the map has.
+TEST(Icp, ConvergesWhenMostPointsAreSeenForTheFirstTime) {
+  const VoxelMap map = MapOf(Corner(0.003, 1));
+  const Pose T_map_base = FromXyYaw(0.03, -0.02, 0.02);
+  auto points = Moved(Corner(0.003, 2), T_map_base.inverse());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (i % 10 != 0) points[i].position += Eigen::Vector3f(30.0f, 0.0f, 0.0f);
+  const RegisterResult result = Register(points, kOrigin, map, Guess(Pose::Identity()), {});
+  EXPECT_TRUE(result.converged);
+  EXPECT_LT((result.T_map_base.translation() - T_map_base.translation()).norm(), 0.005);
+}
+
 TEST(Icp, GivesTheSameBitsTwice) {
   const VoxelMap map = MapOf(Corner(0.005, 1));
   const auto points = Moved(Corner(0.005, 2), FromXyYaw(0.02, 0.01, 0.01));
