@@ -12,7 +12,7 @@
 namespace merlin {
 namespace {
 
-constexpr double kFirstDamping = 1e-6, kDampingFactor = 10.0;  // guesses; of H's diagonal
+constexpr double kFirstDamping = 1e-12, kDampingFactor = 10.0;  // guesses; of H's diagonal
 constexpr double kDampingMax = 1e12;                           // beyond it a step moves nothing
 constexpr double kFactor_bytes_max = 4e9;
 
