@@ -51,6 +51,14 @@ Vector6d Log(const Pose& pose) {
   return tangent;
 }
 
+// Sola et al., eq. 176.
+Matrix6d Adjoint(const Pose& pose) {
+  Matrix6d adjoint = Matrix6d::Zero();
+  adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = pose.linear();
+  adjoint.topRightCorner<3, 3>() = Hat(pose.translation()) * pose.linear();
+  return adjoint;
+}
+
 Pose Interpolate(const Pose& T_w_a, const Pose& T_w_b, double share) {
   return T_w_a * Exp(share * Log(T_w_a.inverse() * T_w_b));
 }

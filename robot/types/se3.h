@@ -28,6 +28,9 @@ Eigen::Matrix3d LeftJacobianSo3(const Eigen::Vector3d& w);
 Pose Exp(const Vector6d& tangent);
 Vector6d Log(const Pose& pose);
 
+// A small motion x after the pose is the small motion Adjoint(pose) x before it: pose Exp(x) = Exp(Adjoint(pose) x) pose.
+Matrix6d Adjoint(const Pose& pose);
+
 // Constant-velocity interpolation: T_w_a at share 0, T_w_b at share 1.
 Pose Interpolate(const Pose& T_w_a, const Pose& T_w_b, double share);
 

@@ -56,6 +56,15 @@ TEST(Se3, LogOfHalfATurnHasLengthPi) {
   EXPECT_NEAR(LogSo3(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitY()).toRotationMatrix()).norm(), kPi, 1e-12);
 }
 
+TEST(Se3, AdjointCarriesAMotionFromAfterThePoseToBeforeIt) {
+  for (const Vector6d& tangent : Tangents())
+    for (const Vector6d& moved : Tangents()) {
+      const Pose pose = Exp(tangent), motion = Exp(moved);
+      EXPECT_LT(((pose * motion).matrix() - (Exp(Adjoint(pose) * moved) * pose).matrix()).norm(), 1e-12);
+      EXPECT_LT((Adjoint(pose * motion) - Adjoint(pose) * Adjoint(motion)).norm(), 1e-12);
+    }
+}
+
 TEST(Se3, InterpolatesEndsAndTheMiddleOfAQuarterCircle) {
   const Pose a = FromXyYaw(1.0, 0.0, kPi / 2), b = FromXyYaw(0.0, 1.0, kPi);  // on the unit circle, counter-clockwise
   EXPECT_TRUE(Interpolate(a, b, 0.0).isApprox(a, 1e-12));

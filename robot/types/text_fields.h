@@ -1,0 +1,51 @@
+// A line of a text file as fields between blanks, checked as they are read: what every reader of such a file shares.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace merlin {
+
+// Calls each(line, number) for every line of a text, numbers from 1 on; neither "\n" nor "\r\n" belongs to the line.
+template <class Each>
+void ForEachLine(std::string_view text, Each each) {
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::size_t end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    each(line, number);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+}
+
+// A field for an error message: quoted, cut where it is long, without control characters or bytes that are not ASCII.
+std::string Quoted(std::string_view field);
+
+class TextFields {
+ public:
+  // file and line: for the errors. The line must outlive this.
+  TextFields(std::string_view line, std::string_view file, std::size_t number)
+      : rest_(line), file_(file), number_(number) {}
+
+  // The next field; empty at the line's end.
+  std::string_view Word();
+
+  // The next field as a finite number of at most that size, or as a whole number. Throws InputError; what: its name.
+  double Number(std::string_view what, double size_max);
+  std::int64_t Whole(std::string_view what);
+
+  bool AtEnd() const;
+  void RequireEnd(std::string_view what);  // throws InputError; what: the whole line's
+
+  std::string where() const { return std::string(file_) + ":" + std::to_string(number_); }
+
+ private:
+  std::string_view Required(std::string_view what);
+
+  std::string_view rest_;
+  std::string_view file_;
+  std::size_t number_;
+};
+
+}  // namespace merlin
