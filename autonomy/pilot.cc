@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kPathStep_m = 0.05;
 constexpr double kStraight_m = 4.0;
+constexpr double kLapEnd_m = 1.5;  // beyond the line and beside it, at most: no farther than half a corridor
 
 // Samples of a straight line from a point, direction as angle.
 void AddStraight(std::vector<Eigen::Vector2d>& path, const Eigen::Vector2d& from, double yaw_rad, double length_m) {
@@ -42,8 +43,9 @@ void Pilot::CountLaps(const Pose& T_map_base) {
   last_yaw_rad_ = Yaw(T_map_base);
   const Eigen::Vector3d from_start = T_map_start_->inverse() * T_map_base.translation();
   const bool round = std::abs(turned_rad_) > 2.0 * std::numbers::pi * (laps_ + 1) - 0.3;
-  // Beyond the start line, and beside it rather than in the next corridor.
-  if (round && std::abs(from_start.x()) < config_.lap_radius_m && std::abs(from_start.y()) < 4.0 * config_.lap_radius_m) ++laps_;
+  // Beyond the start line, and in its corridor.
+  const double beyond_m = from_start.x() - config_.lap_overlap_m;
+  if (round && beyond_m >= 0.0 && beyond_m < kLapEnd_m && std::abs(from_start.y()) < kLapEnd_m) ++laps_;
 }
 
 void Pilot::FollowCorridor(const Pose& T_map_base, const Slam& slam) {

@@ -20,7 +20,7 @@ struct PilotConfig {
   double look_ahead_m = 0.9;         // [0.2, 5] of pure pursuit; longer is smoother, shorter truer
   double turn_radius_m = 0.9;        // [0.3, 5] of the arc around a corner; the car's smallest is 0.71
   double decide_m = 2.6;             // [0.5, 7] distance to the end wall at which it decides where to turn
-  double lap_radius_m = 0.4;         // [0.05, 5] a lap ends this close to where it began; side-ways four times as far
+  double lap_overlap_m = 0.7;        // [0, 5] a lap ends this far beyond the line where it began: what was seen at first is seen again
   double command_valid_s = 0.3;      // [0.02, 5] the car brakes by itself when no command follows
   int lost_frames_max = 20;          // [1, 1000] frames in a row without registration, then it stands until one fits
   AvoidConfig avoid;
@@ -34,7 +34,7 @@ void Visit(Visitor& v, PilotConfig& c) {
   v("look_ahead_m", c.look_ahead_m, {0.2, 5.0});
   v("turn_radius_m", c.turn_radius_m, {0.3, 5.0});
   v("decide_m", c.decide_m, {0.5, 7.0});
-  v("lap_radius_m", c.lap_radius_m, {0.05, 5.0});
+  v("lap_overlap_m", c.lap_overlap_m, {0.0, 5.0});
   v("command_valid_s", c.command_valid_s, {0.02, 5.0});
   v("lost_frames_max", c.lost_frames_max, {1.0, 1000.0});
   v("avoid", c.avoid);

@@ -89,7 +89,7 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robo
   const Truth* truth = true_world.truth;
   const Outline outline = true_world.world != nullptr ? true_world.world->plan_xy_m() : Outline{};
   const Trajectory true_path = truth != nullptr ? truth->trajectory() : Trajectory{};
-  const Trajectory estimate = ToTrajectory(slam.trajectory());
+  const Trajectory estimate = ToTrajectory(slam.trajectory()), online = ToTrajectory(slam.online());
   const std::vector<MapPoint> map = MapPoints(slam, scenario.slam.map_points_min);
 
   metrics.distance_m = truth != nullptr ? PathLength_m(true_path) : slam.path_m();
@@ -99,6 +99,7 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robo
     metrics.obstacle_gap_m = truth->obstacle_gap_m();
     metrics.obstacle_stop_s = truth->obstacle_stop_s();
   }
+  metrics.loops_closed = slam.loops();
   metrics.depth_frames = evidence.depth_frames;
   metrics.color_frames = evidence.color_frames;
   metrics.frames_dropped = static_cast<std::int64_t>(robot.depth->Status().missed + (robot.color ? robot.color->Status().missed : 0));
@@ -109,7 +110,7 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robo
                      .truth = true_path, .estimate = estimate};
   if (const auto ate = AlignAndAte(pairs)) {
     metrics.ate_rmse_m = picture.ate_rmse_m = ate->rmse_m;
-    metrics.ate_online_rmse_m = ate->rmse_m;  // nothing corrects the path afterwards yet
+    if (const auto driven = AlignAndAte(PairAtEqualStamps(true_path, online))) metrics.ate_online_rmse_m = driven->rmse_m;
     picture.T_world_map = ate->T_world_map;
     picture.size = MeasureMapSize(map, ate->T_world_map, outline);
     metrics.map_size_m = picture.size.size_m;
@@ -126,7 +127,7 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robo
 
   const std::string tum = ToTum(estimate), ply = ToPly(map);
   folder.Write("trajectory_estimate.tum", tum);
-  folder.Write("trajectory_online.tum", tum);
+  folder.Write("trajectory_online.tum", ToTum(online));
   if (truth != nullptr) folder.Write("trajectory_truth.tum", ToTum(true_path));
   folder.Write("map.ply", ply);
   const GridMap grid = ToGridMap(slam.occupancy());

@@ -4,12 +4,21 @@
 #include <cmath>
 
 namespace merlin {
+namespace {
 
-Slam::Slam(const SlamConfig& config) : config_(config), local_(config.local), occupancy_(config.occupancy) {}
+constexpr double kKnown_m = 3.0;       // so far after a former visit was last recognised its key frames are trusted
+constexpr int kRecallAtOnce = 2;       // former key frames put back into the local map a frame: it keeps up at 4 m/s
+constexpr double kRecall_m = 4.0;      // of views whose middles are nearer than this
+constexpr double kLate_m = 1.0;        // what was seen on the last metre looks for loops
+
+}  // namespace
+
+Slam::Slam(const SlamConfig& config)
+    : config_(config), local_(config.local), occupancy_(config.occupancy), closer_(config.loop) {}
 
 PosePrior Slam::Predict(const Observation& observation) const {
   const Pose motion = T_odom_last_.inverse() * observation.T_odom_base;
-  Pose T_map_base = trajectory_.back().T_map_base * motion;
+  Pose T_map_base = *T_map_last_ * motion;
   const bool has_heading = std::isfinite(observation.yaw_sigma_rad);
   const double yaw_rad = has_heading ? WrapPi(observation.yaw_rad + *map_turn_rad_) : Yaw(T_map_base);
 
@@ -24,49 +33,148 @@ PosePrior Slam::Predict(const Observation& observation) const {
   return prior;
 }
 
-std::optional<Pose> Slam::Update(const Observation& observation) {
-  if (!observation.T_odom_base.matrix().allFinite()) return std::nullopt;
+bool Slam::Begin(const Observation& observation) {
   const bool has_heading = std::isfinite(observation.yaw_sigma_rad);
   if (!first_stamp_) first_stamp_ = observation.stamp;
-  if (trajectory_.empty()) {
+  if (!T_map_last_) {
     const bool settled = observation.yaw_sigma_rad <= config_.start_sigma_rad;
-    if (!settled && Seconds(observation.stamp - *first_stamp_) < config_.start_wait_s) return std::nullopt;
+    if (!settled && Seconds(observation.stamp - *first_stamp_) < config_.start_wait_s) return false;
     T_odom_last_ = observation.T_odom_base;
-    trajectory_.push_back({observation.stamp, FromXyYaw(0.0, 0.0, has_heading ? observation.yaw_rad : 0.0)});
+    T_map_last_ = FromXyYaw(0.0, 0.0, has_heading ? observation.yaw_rad : 0.0);
   }
-
   // Mapping that began without a heading keeps its own direction when one comes.
   if (has_heading && !map_turn_rad_) {
-    const Pose T_map_base = trajectory_.back().T_map_base * (T_odom_last_.inverse() * observation.T_odom_base);
+    const Pose T_map_base = *T_map_last_ * (T_odom_last_.inverse() * observation.T_odom_base);
     map_turn_rad_ = WrapPi(Yaw(T_map_base) - observation.yaw_rad);
   }
+  return true;
+}
 
+std::optional<Pose> Slam::Update(const Observation& observation) {
+  if (!observation.T_odom_base.matrix().allFinite() || !Begin(observation)) return std::nullopt;
   const PosePrior prior = Predict(observation);
   const std::vector<Point> source = Downsample(observation.points_base, config_.source_voxel_m);
   last_ = Register(source, observation.camera_base, local_, prior, config_.icp);
   lost_frames_ = last_.converged || keyframes_.empty() ? 0 : lost_frames_ + 1;
-  const Pose T_map_base = last_.converged ? last_.T_map_base : prior.T_map_base;
+  Pose T_map_base = last_.converged ? last_.T_map_base : prior.T_map_base;
 
   path_m_ += (T_odom_last_.inverse() * observation.T_odom_base).translation().norm();
   T_odom_last_ = observation.T_odom_base;
-  if (trajectory_.back().stamp == observation.stamp) trajectory_.pop_back();
-  trajectory_.push_back({observation.stamp, T_map_base});
-
-  const Pose since_keyframe = keyframes_.empty() ? Pose::Identity() : keyframes_.back().T_map_base.inverse() * T_map_base;
   // The first key frame must be something to hold on to; later ones must have held on to it.
   const bool trusted = keyframes_.empty() ? static_cast<int>(source.size()) >= config_.icp.inliers_min : last_.converged;
-  const bool moved = keyframes_.empty() || since_keyframe.translation().norm() >= config_.keyframe_distance_m ||
-                    std::abs(Yaw(since_keyframe)) >= config_.keyframe_angle_rad;
-  if (trusted && moved) {
-    local_.Insert(observation.points_base, T_map_base, path_m_);
-    occupancy_.Insert(observation, T_map_base);
-    keyframes_.push_back({observation.stamp, T_map_base, observation.points_base});
+  if (trusted) {
+    Keep(observation, T_map_base);
+    if (closer_.IsDue(path_m_)) SearchLoop(observation, T_map_base);
+    if (KnowsThePlace()) RecallFormer(T_map_base);
   }
   if (path_m_ - pruned_at_m_ > 1.0) {
     local_.ForgetBefore(path_m_ - config_.local_length_m);
     pruned_at_m_ = path_m_;
   }
+  T_map_last_ = T_map_base;
+  Record(observation.stamp, T_map_base);
   return T_map_base;
+}
+
+void Slam::Record(Time stamp, const Pose& T_map_base) {
+  if (!online_.empty() && online_.back().stamp == stamp) online_.pop_back(), steps_.pop_back();
+  online_.push_back({stamp, T_map_base});
+  if (keyframes_.empty())
+    steps_.push_back({std::nullopt, T_map_base});
+  else
+    steps_.push_back({keyframes_.size() - 1, keyframes_.back().T_map_base.inverse() * T_map_base});
+}
+
+void Slam::Keep(const Observation& observation, const Pose& T_map_base) {
+  const Pose since = keyframes_.empty() ? Pose::Identity() : keyframes_.back().T_map_base.inverse() * T_map_base;
+  const bool moved = keyframes_.empty() || since.translation().norm() >= config_.keyframe_distance_m ||
+                     std::abs(Yaw(since)) >= config_.keyframe_angle_rad;
+  if (!moved || IsRevisit(T_map_base)) return;
+  local_.Insert(observation.points_base, T_map_base, path_m_);
+  occupancy_.Insert(observation.points_base, observation.camera_base, T_map_base);
+  Keyframe keyframe{.stamp = observation.stamp,
+                    .T_map_base = T_map_base,
+                    .T_previous_base = since,
+                    .path_m = path_m_,
+                    .yaw_rad = std::nullopt,
+                    .yaw_sigma_rad = observation.yaw_sigma_rad,
+                    .points_base = observation.points_base,
+                    .camera_base = observation.camera_base,
+                    .in_local_map_m = path_m_};
+  if (map_turn_rad_ && std::isfinite(observation.yaw_sigma_rad))
+    keyframe.yaw_rad = WrapPi(observation.yaw_rad + *map_turn_rad_);
+  keyframes_.push_back(std::move(keyframe));
+}
+
+bool Slam::KnowsThePlace() const { return closer_.SinceLoop_m(path_m_) < kKnown_m; }
+
+bool Slam::IsRevisit(const Pose& T_map_base) const {
+  if (!KnowsThePlace()) return false;
+  return std::ranges::any_of(keyframes_, [&](const Keyframe& keyframe) {
+    return path_m_ - keyframe.path_m >= config_.loop.apart_m &&
+           (keyframe.T_map_base.translation() - T_map_base.translation()).head<2>().norm() < config_.revisit_m &&
+           std::abs(WrapPi(Yaw(keyframe.T_map_base) - Yaw(T_map_base))) < config_.revisit_rad;
+  });
+}
+
+// What a former visit saw here, for frames to be registered against.
+void Slam::RecallFormer(const Pose& T_map_base) {
+  int left = kRecallAtOnce;
+  for (Keyframe& keyframe : keyframes_) {
+    if (left == 0) return;
+    if (path_m_ - keyframe.in_local_map_m < config_.local_length_m) continue;
+    if ((ViewCentre(keyframe.T_map_base) - ViewCentre(T_map_base)).norm() > kRecall_m) continue;
+    if (std::abs(WrapPi(Yaw(keyframe.T_map_base) - Yaw(T_map_base))) > config_.loop.turn_rad) continue;
+    local_.Insert(keyframe.points_base, keyframe.T_map_base, path_m_);
+    keyframe.in_local_map_m = path_m_;
+    --left;
+  }
+}
+
+// Of the key frames on the last metre and of this one, in its frame, thinned.
+std::vector<Point> Slam::SeenOfLate(const Observation& observation, const Pose& T_map_base) const {
+  std::vector<Point> points = observation.points_base;
+  for (auto keyframe = keyframes_.rbegin(); keyframe != keyframes_.rend() && path_m_ - keyframe->path_m < kLate_m; ++keyframe) {
+    const Eigen::Isometry3f T = (T_map_base.inverse() * keyframe->T_map_base).cast<float>();
+    for (Point point : keyframe->points_base) {
+      point.position = T * point.position;
+      points.push_back(point);
+    }
+  }
+  return Downsample(points, config_.source_voxel_m);
+}
+
+void Slam::SearchLoop(const Observation& observation, Pose& T_map_base) {
+  const auto corrected = closer_.Search(keyframes_, SeenOfLate(observation, T_map_base), T_map_base, path_m_);
+  if (!corrected) return;
+  double moved_m = 0.0;
+  for (std::size_t i = 0; i < corrected->size(); ++i)
+    moved_m = std::max(moved_m, ((*corrected)[i].translation() - keyframes_[i].T_map_base.translation()).norm());
+  if (moved_m < config_.correction_min_m) return;
+  T_map_base = corrected->back() * keyframes_.back().T_map_base.inverse() * T_map_base;
+  Correct(*corrected);
+}
+
+// Takes over the corrected poses, and makes the maps anew.
+void Slam::Correct(const std::vector<Pose>& corrected) {
+  for (std::size_t i = 0; i < corrected.size(); ++i) keyframes_[i].T_map_base = corrected[i];
+  local_ = VoxelMap(config_.local);
+  occupancy_ = OccupancyGrid(config_.occupancy);
+  for (Keyframe& keyframe : keyframes_) {
+    occupancy_.Insert(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
+    if (path_m_ - keyframe.path_m >= config_.local_length_m &&
+        (ViewCentre(keyframe.T_map_base) - ViewCentre(corrected.back())).norm() > kRecall_m)
+      continue;
+    local_.Insert(keyframe.points_base, keyframe.T_map_base, path_m_);
+    keyframe.in_local_map_m = path_m_;
+  }
+}
+
+std::vector<MapPose> Slam::trajectory() const {
+  std::vector<MapPose> poses = online_;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (steps_[i].keyframe) poses[i].T_map_base = keyframes_[*steps_[i].keyframe].T_map_base * steps_[i].T_keyframe_base;
+  return poses;
 }
 
 VoxelMap Slam::BuildMap() const {

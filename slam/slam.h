@@ -1,10 +1,12 @@
-// Simultaneous localisation and mapping as one sentence: guess, register, keep key frames, map.
+// Simultaneous localisation and mapping as one sentence: guess, register, keep key frames, close loops, map.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "perception/observation.h"
+#include "slam/keyframe.h"
+#include "slam/loop/loop_closer.h"
 #include "slam/map/occupancy_grid.h"
 #include "slam/map/voxel_map.h"
 #include "slam/register/icp.h"
@@ -15,10 +17,14 @@ struct SlamConfig {
   VoxelMapConfig local;                 // the map a frame is registered against
   IcpConfig icp;
   OccupancyConfig occupancy;
+  LoopConfig loop;
   double source_voxel_m = 0.08;         // [0.005, 1] frames are thinned to one point a voxel of this edge before registration
   double local_length_m = 8.0;          // [0.5, 1000] driven length after which an unseen voxel leaves the local map
   double keyframe_distance_m = 0.1;     // [0, 10]
   double keyframe_angle_rad = 0.08;     // [0, 3.2]
+  double revisit_m = 0.5;               // [0, 10] where the map is known already, a former key frame this near...
+  double revisit_rad = 0.4;             // [0, 3.2] ...and so turned saves a new one
+  double correction_min_m = 0.005;      // [0, 1] a loop that moves no key frame farther leaves the map as it is
   double odometry_share = 0.02;         // [1e-4, 1] one sigma of odometry over the way driven; guess
   double odometry_floor_m = 0.001;      // [1e-5, 1] and at least; guess
   double yaw_floor_rad = 0.003;         // [1e-5, 1] the heading's sigma is not believed below this; guess
@@ -35,10 +41,14 @@ void Visit(Visitor& v, SlamConfig& c) {
   v("local", c.local);
   v("icp", c.icp);
   v("occupancy", c.occupancy);
+  v("loop", c.loop);
   v("source_voxel_m", c.source_voxel_m, {0.005, 1.0});
   v("local_length_m", c.local_length_m, {0.5, 1000.0});
   v("keyframe_distance_m", c.keyframe_distance_m, {0.0, 10.0});
   v("keyframe_angle_rad", c.keyframe_angle_rad, {0.0, 3.2});
+  v("revisit_m", c.revisit_m, {0.0, 10.0});
+  v("revisit_rad", c.revisit_rad, {0.0, 3.2});
+  v("correction_min_m", c.correction_min_m, {0.0, 1.0});
   v("odometry_share", c.odometry_share, {1e-4, 1.0});
   v("odometry_floor_m", c.odometry_floor_m, {1e-5, 1.0});
   v("yaw_floor_rad", c.yaw_floor_rad, {1e-5, 1.0});
@@ -49,12 +59,6 @@ void Visit(Visitor& v, SlamConfig& c) {
   v("map_voxel_m", c.map_voxel_m, {0.005, 1.0});
   v("map_points_min", c.map_points_min, {1.0, 1000.0});
 }
-
-struct Keyframe {
-  Time stamp{0};
-  Pose T_map_base = Pose::Identity();
-  std::vector<Point> points_base;
-};
 
 struct MapPose {
   Time stamp{0};
@@ -76,20 +80,40 @@ class Slam {
   const VoxelMap& local_map() const { return local_; }
   const OccupancyGrid& occupancy() const { return occupancy_; }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
-  const std::vector<MapPose>& trajectory() const { return trajectory_; }  // one pose a frame, as the car drove by it
+  const std::vector<MapPose>& online() const { return online_; }  // one pose a frame, as the car drove by it
+  std::vector<MapPose> trajectory() const;                        // the same frames, as the closed loops correct them
   double path_m() const { return path_m_; }
+  int loops() const { return closer_.loops(); }                   // that join two key frames
 
   // The whole map: voxels with at least map_points_min points, from all key frames.
   VoxelMap BuildMap() const;
 
  private:
   PosePrior Predict(const Observation& observation) const;
+  bool Begin(const Observation& observation);  // false: it waits for the heading
+  void Keep(const Observation& observation, const Pose& T_map_base);
+  void Record(Time stamp, const Pose& T_map_base);
+  bool KnowsThePlace() const;  // a former visit has been recognised, and not long ago
+  bool IsRevisit(const Pose& T_map_base) const;
+  void RecallFormer(const Pose& T_map_base);
+  void SearchLoop(const Observation& observation, Pose& T_map_base);
+  void Correct(const std::vector<Pose>& corrected);
+  std::vector<Point> SeenOfLate(const Observation& observation, const Pose& T_map_base) const;
+
+  // A frame's pose, from the key frame it hangs on; before the first one none, and from the map.
+  struct Step {
+    std::optional<std::size_t> keyframe;
+    Pose T_keyframe_base;
+  };
 
   SlamConfig config_;
   VoxelMap local_;
   OccupancyGrid occupancy_;
+  LoopCloser closer_;
   std::vector<Keyframe> keyframes_;
-  std::vector<MapPose> trajectory_;
+  std::vector<MapPose> online_;
+  std::vector<Step> steps_;              // of the online poses
+  std::optional<Pose> T_map_last_;       // the newest, as corrected
   RegisterResult last_;
   int lost_frames_ = 0;
   double path_m_ = 0.0, pruned_at_m_ = 0.0;

@@ -16,7 +16,7 @@ struct StackTimes {
 // empty.
 struct Metrics {
   std::optional<double> sim_time_s, wall_time_s, setup_s, real_time_factor, distance_m;
-  std::optional<std::int64_t> laps, collisions;
+  std::optional<std::int64_t> laps, collisions, loops_closed;  // loops: that the map was corrected by
   std::optional<double> ate_rmse_m, ate_online_rmse_m, rpe_translation_percent, rpe_rotation_deg_per_m;
   std::array<std::optional<double>, 2> map_size_m, map_size_error_percent;
   std::optional<double> map_to_plan_p95_m, coverage_percent;
@@ -37,6 +37,7 @@ void VisitMetrics(const Metrics& m, Visitor visit) {
   visit("distance_m", m.distance_m);
   visit("laps", m.laps);
   visit("collisions", m.collisions);
+  visit("loops_closed", m.loops_closed);
   visit("ate_rmse_m", m.ate_rmse_m);
   visit("ate_online_rmse_m", m.ate_online_rmse_m);
   visit("rpe_translation_percent", m.rpe_translation_percent);

@@ -48,14 +48,15 @@ void OccupancyGrid::FreeAlong(int x0, int y0, int x1, int y1) {  // Bresenham, t
   }
 }
 
-void OccupancyGrid::Insert(const Observation& observation, const Pose& T_map_base) {
+void OccupancyGrid::Insert(std::span<const Point> points_base, const Eigen::Vector3f& camera_base,
+                           const Pose& T_map_base) {
   const auto cell_of = [this](const Eigen::Vector3d& p) {
     return Eigen::Vector2i((p.head<2>() / config_.cell_m).array().floor().cast<int>());
   };
-  const Eigen::Vector3d camera_map = T_map_base * observation.camera_base.cast<double>();
+  const Eigen::Vector3d camera_map = T_map_base * camera_base.cast<double>();
   const Eigen::Vector2i from = cell_of(camera_map);
   GrowTo(from.x(), from.y());
-  for (const Point& point : observation.points_base) {
+  for (const Point& point : points_base) {
     const Eigen::Vector3d p_map = T_map_base * point.position.cast<double>();
     if (!((p_map - camera_map).norm() < kFarthest_m)) continue;  // not finite either
     const Eigen::Vector3d ray = p_map - camera_map;

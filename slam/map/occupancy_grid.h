@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "perception/observation.h"
@@ -31,7 +32,8 @@ class OccupancyGrid {
   enum class Cell : std::int8_t { kUnknown = -1, kFree = 0, kOccupied = 100 };  // values of ROS nav_msgs/OccupancyGrid
 
   explicit OccupancyGrid(const OccupancyConfig& config) : config_(config) {}
-  void Insert(const Observation& observation, const Pose& T_map_base);
+  // camera_base: where the rays of the points began.
+  void Insert(std::span<const Point> points_base, const Eigen::Vector3f& camera_base, const Pose& T_map_base);
 
   Cell At(const Eigen::Vector2d& point_map) const;  // unknown outside
   int width() const { return width_; }

@@ -28,11 +28,10 @@ class Walls {
   // What a camera at the plan's origin, free all around, has carved.
   OccupancyGrid Grid() const {
     OccupancyGrid grid({});
-    Observation observation;
-    observation.camera_base = {0.0f, 0.0f, 0.7f};
+    std::vector<Point> points;
     for (const Point& point : points_)
-      if (std::abs(point.position.z() - 0.7f) < 0.05f) observation.points_base.push_back(point);
-    for (int i = 0; i < 2; ++i) grid.Insert(observation, T_map_plan_);
+      if (std::abs(point.position.z() - 0.7f) < 0.05f) points.push_back(point);
+    for (int i = 0; i < 2; ++i) grid.Insert(points, {0.0f, 0.0f, 0.7f}, T_map_plan_);
     return grid;
   }
   const Pose& T_map_plan() const { return T_map_plan_; }

@@ -87,10 +87,10 @@ TEST(Pilot, IsDoneAfterItsLapsAndNotBefore) {
   Pilot pilot(Car(), {.behavior = "follow_corridor", .laps = 1}, {});
   Decision decision;
   constexpr int kSteps = 400;
-  for (int i = 0; i <= kSteps; ++i) {  // once round a circle of 5 m radius that begins along x
+  for (int i = 0; i <= kSteps + 10; ++i) {  // once round a circle of 5 m radius that begins along x, and 0.78 m on
     const double angle = 2.0 * std::numbers::pi * i / kSteps;
     decision = pilot.Decide(Quiet(), FromXyYaw(5.0 * std::sin(angle), 5.0 * (1.0 - std::cos(angle)), WrapPi(angle)), slam);
-    EXPECT_TRUE(!decision.done || i >= kSteps * 9 / 10) << i;
+    EXPECT_EQ(decision.done, i >= kSteps + 9) << i;  // 0.7 m beyond
   }
   EXPECT_TRUE(decision.done);
   EXPECT_EQ(decision.command.speed_m_s, 0.0);

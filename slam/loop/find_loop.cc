@@ -1,0 +1,77 @@
+#include "slam/loop/find_loop.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "slam/map/voxel_map.h"
+
+namespace merlin {
+namespace {
+
+constexpr std::size_t kFormerMax = 30;  // key frames that the former map is made of
+constexpr double kCoarse_m = 0.4, kFine_m = 0.1;
+
+// Indices of earlier visits' key frames that look at the same place, nearest view first.
+std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const Pose& T_map_base, double path_m,
+                                     const LoopConfig& config) {
+  const Eigen::Vector2d centre = ViewCentre(T_map_base);
+  std::vector<std::pair<double, std::size_t>> views;
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const double since_m = path_m - keyframes[i].path_m;
+    if (since_m < config.apart_m) break;
+    const double distance_m = (ViewCentre(keyframes[i].T_map_base) - centre).norm();
+    const double turn_rad = std::abs(WrapPi(Yaw(keyframes[i].T_map_base) - Yaw(T_map_base)));
+    if (distance_m < config.reach_m + config.reach_share * since_m && turn_rad < config.turn_rad)
+      views.emplace_back(distance_m, i);
+  }
+  std::ranges::sort(views);
+  std::vector<std::size_t> indices;
+  for (const auto& [distance_m, i] : views) indices.push_back(i);
+  indices.resize(std::min(indices.size(), kFormerMax));
+  return indices;
+}
+
+VoxelMap MapOf(std::span<const Keyframe> keyframes, const std::vector<std::size_t>& indices, double voxel_m) {
+  VoxelMap map({.voxel_m = voxel_m});
+  for (const std::size_t i : indices) map.Insert(keyframes[i].points_base, keyframes[i].T_map_base, 0.0);
+  return map;
+}
+
+double ShareMeeting(const VoxelMap& map, std::span<const Point> points_base, const Pose& T_map_base) {
+  if (points_base.empty()) return 0.0;
+  const Eigen::Isometry3f T = T_map_base.cast<float>();
+  const auto meets = [&](const Point& point) { return map.Nearest(T * point.position) != nullptr; };
+  return static_cast<double>(std::ranges::count_if(points_base, meets)) / static_cast<double>(points_base.size());
+}
+
+}  // namespace
+
+std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<const Point> points_base, const Pose& T_map_base,
+                             double path_m, const LoopConfig& config) {
+  const std::vector<std::size_t> former = FormerViews(keyframes, T_map_base, path_m, config);
+  if (former.empty()) return std::nullopt;
+
+  PosePrior prior;
+  prior.T_map_base = T_map_base;
+  Vector6d sigma;
+  sigma << config.start_sigma_m, config.start_sigma_m, 0.01, 0.005, 0.005, config.start_sigma_rad;
+  prior.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+  // Coarse first: a point finds its surface up to a voxel's edge away, whatever the walls' distance the estimate is off.
+  const VoxelMap coarse = MapOf(keyframes, former, kCoarse_m), fine = MapOf(keyframes, former, kFine_m);
+  const IcpConfig wide{.kernel_m = 0.5 * kCoarse_m, .map_sigma_m = 0.1 * kCoarse_m};
+  const RegisterResult guess = Register(points_base, Eigen::Vector3f::Zero(), coarse, prior, wide);
+  if (!guess.converged) return std::nullopt;
+  prior.information /= 4.0;  // it has done its work: the shape decides
+  const PosePrior refined{guess.T_map_base, Matrix6d(prior.information)};
+  const RegisterResult fit = Register(points_base, Eigen::Vector3f::Zero(), fine, refined, {});
+  if (!fit.converged || fit.rms_m > config.rms_max_m) return std::nullopt;
+  const Eigen::Matrix2d covariance_m2 = fit.covariance.topLeftCorner<2, 2>();
+  const double sigma_m = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance_m2).eigenvalues().maxCoeff());
+  const double near = ShareMeeting(coarse, points_base, fit.T_map_base), on = ShareMeeting(fine, points_base, fit.T_map_base);
+  if (sigma_m > config.sigma_max_m || near < config.overlap_min || on < config.on_surface_min * near) return std::nullopt;
+  return Loop{former.front(), fit.T_map_base, fit.covariance, near};
+}
+
+}  // namespace merlin

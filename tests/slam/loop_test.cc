@@ -1,0 +1,169 @@
+#include "slam/loop/loop_closer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace merlin {
+namespace {
+
+// Walls of a corridor along x, 2 m wide, with pillars where asked for, 8 m of it from x0 on; frame of the map.
+std::vector<Eigen::Vector3d> Corridor(double x0, bool pillars) {
+  std::vector<Eigen::Vector3d> points;
+  for (double z = 0.05; z < 1.2; z += 0.05) {
+    for (double x = 0.0; x < 8.0; x += 0.05) points.emplace_back(x0 + x, 1.0, z), points.emplace_back(x0 + x, -1.0, z);
+    for (const double x : {1.5, 3.5, 5.0})
+      for (double y = 0.0; y < 0.7 && pillars; y += 0.05) points.emplace_back(x0 + x, 1.0 - y, z), points.emplace_back(x0 + x, y - 1.0, z);
+  }
+  for (double x = 0.0; x < 8.0; x += 0.1)
+    for (double y = -1.0; y <= 1.0; y += 0.1) points.emplace_back(x0 + x, y, 0.0);
+  return points;
+}
+
+std::vector<Point> SeenFrom(const std::vector<Eigen::Vector3d>& world, const Pose& T_world_base) {
+  std::vector<Point> points;
+  for (const Eigen::Vector3d& p : world) {
+    const Eigen::Vector3d p_base = T_world_base.inverse() * p;
+    if (p_base.x() < 0.5 || p_base.x() > 4.5) continue;
+    points.push_back({.position = p_base.cast<float>(), .sigma_m = 0.01f});
+  }
+  return points;
+}
+
+Keyframe At(const Pose& T_map_base, double path_m, const std::vector<Eigen::Vector3d>& world) {
+  Keyframe keyframe;
+  keyframe.T_map_base = T_map_base;
+  keyframe.path_m = path_m;
+  keyframe.points_base = SeenFrom(world, T_map_base);
+  return keyframe;
+}
+
+std::vector<Keyframe> FirstVisit(const std::vector<Eigen::Vector3d>& world) {
+  std::vector<Keyframe> keyframes;
+  for (int i = 0; i < 10; ++i) keyframes.push_back(At(FromXyYaw(0.1 * i, 0.0, 0.0), 0.1 * i, world));
+  return keyframes;
+}
+
+constexpr double kLater_m = 50.0;
+
+TEST(FindLoop, RecognisesThePlaceThirtyCentimetresAndOneDegreeOff) {
+  const auto world = Corridor(0.0, true);
+  const auto keyframes = FirstVisit(world);
+  const Pose truth = FromXyYaw(0.4, 0.05, 0.01), believed = FromXyYaw(0.55, -0.2, 0.03);
+  const auto loop = FindLoop(keyframes, SeenFrom(world, truth), believed, kLater_m, {});
+  ASSERT_TRUE(loop);
+  EXPECT_LT((loop->T_map_base.translation() - truth.translation()).norm(), 0.02);
+  EXPECT_NEAR(Yaw(loop->T_map_base), 0.01, 0.004);
+  EXPECT_GT(loop->overlap, 0.5);
+}
+
+TEST(FindLoop, FindsNoneSoonAfterNorElsewhereNorTheOtherWayNorInAnotherShape) {
+  const auto world = Corridor(0.0, true);
+  const auto keyframes = FirstVisit(world);
+  const Pose here = FromXyYaw(0.4, 0.0, 0.0);
+  const auto points = SeenFrom(world, here);
+  ASSERT_TRUE(FindLoop(keyframes, points, here, kLater_m, {}));
+  EXPECT_FALSE(FindLoop(keyframes, points, here, 5.0, {})) << "soon after";
+  EXPECT_FALSE(FindLoop(keyframes, points, FromXyYaw(10.0, 0.0, 0.0), kLater_m, {})) << "elsewhere";
+  EXPECT_FALSE(FindLoop(keyframes, points, FromXyYaw(0.4, 0.0, std::numbers::pi), kLater_m, {})) << "the other way";
+  std::vector<Point> slanted = points;
+  for (Point& point : slanted) point.position.y() *= 1.25f;
+  EXPECT_FALSE(FindLoop(keyframes, slanted, here, kLater_m, {})) << "another shape";
+  EXPECT_FALSE(FindLoop(keyframes, {}, here, kLater_m, {})) << "nothing seen";
+  EXPECT_FALSE(FindLoop({}, points, here, kLater_m, {})) << "no key frames";
+}
+
+TEST(FindLoop, FindsNoneInABareCorridorWhichDoesNotTellWhereAlongIt) {
+  const auto world = Corridor(0.0, false);
+  EXPECT_FALSE(FindLoop(FirstVisit(world), SeenFrom(world, FromXyYaw(0.4, 0.0, 0.0)), FromXyYaw(0.5, 0.0, 0.0), kLater_m, {}));
+}
+
+// A square of 10 m edges driven once with odometry that drifts evenly one way in the room.
+struct Square {
+  explicit Square(const Eigen::Vector3d& drift_m) {
+    const auto world = Corridor(0.0, true);
+    Pose truth = Pose::Identity();
+    Pose believed = truth, previous_believed = believed;
+    for (int i = 0; i <= 410; ++i) {
+      if (i > 0) {
+        const Pose step = FromXyYaw(0.1, 0.0, i % 100 == 0 ? 0.5 * std::numbers::pi : 0.0);
+        truth = truth * step;
+        believed = believed * step;
+        believed.translation() += drift_m / 410.0;
+      }
+      keyframes.push_back(At(believed, 0.1 * i, {}));
+      keyframes.back().points_base = SeenFrom(world, truth);
+      keyframes.back().T_previous_base = i == 0 ? Pose::Identity() : previous_believed.inverse() * believed;
+      keyframes.back().yaw_rad = Yaw(truth);
+      truths.push_back(truth);
+      previous_believed = believed;
+    }
+  }
+  std::vector<Keyframe> keyframes;
+  std::vector<Pose> truths;
+};
+
+double WorstError_m(const std::vector<Pose>& poses, const std::vector<Pose>& truths) {
+  double worst_m = 0.0;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    worst_m = std::max(worst_m, (poses[i].translation() - truths[i].translation()).norm());
+  return worst_m;
+}
+
+std::vector<Pose> PosesOf(const std::vector<Keyframe>& keyframes) {
+  std::vector<Pose> poses;
+  for (const Keyframe& keyframe : keyframes) poses.push_back(keyframe.T_map_base);
+  return poses;
+}
+
+TEST(LoopCloser, WantsTwoSearchesThatAgreeThenClosesTheSquare) {
+  const Square square({0.25, -0.2, 0.0});
+  ASSERT_GT(WorstError_m(PosesOf(square.keyframes), square.truths), 0.25);
+  LoopCloser closer({});
+  const auto search = [&](std::size_t newest) {
+    const std::span<const Keyframe> until = std::span(square.keyframes).first(newest + 1);
+    const Keyframe& now = until.back();
+    return closer.Search(until, now.points_base, now.T_map_base, now.path_m);
+  };
+  EXPECT_FALSE(search(200)) << "half way round";
+  EXPECT_FALSE(search(404)) << "once";
+  EXPECT_EQ(closer.loops(), 0);
+  const auto solved = search(408);
+  ASSERT_TRUE(solved) << "twice";
+  EXPECT_EQ(closer.loops(), 1);
+  EXPECT_EQ(closer.SinceLoop_m(square.keyframes[408].path_m), 0.0);
+  EXPECT_LT(((*solved)[408].translation() - square.truths[408].translation()).norm(), 0.03);
+  EXPECT_LT(WorstError_m(*solved, square.truths), 0.04);
+  EXPECT_EQ(solved->front().matrix(), square.keyframes.front().T_map_base.matrix());
+}
+
+TEST(LoopCloser, RefusesALoopThatNoOdometryIsBadEnoughFor) {
+  const Square square({1.2, -0.3, 0.0});
+  LoopCloser closer({.reach_m = 3.0, .start_sigma_m = 2.0, .agreeing_min = 1, .strain_max = 30.0});
+  const Keyframe& last = square.keyframes.back();
+  EXPECT_FALSE(closer.Search(square.keyframes, last.points_base, last.T_map_base, last.path_m));
+  EXPECT_EQ(closer.loops(), 0);
+}
+
+TEST(LoopCloser, LeavesAMapWithoutDriftAsItIs) {
+  const Square square(Eigen::Vector3d::Zero());
+  LoopCloser closer({.agreeing_min = 1});
+  const Keyframe& last = square.keyframes.back();
+  const auto solved = closer.Search(square.keyframes, last.points_base, last.T_map_base, last.path_m);
+  ASSERT_TRUE(solved);
+  EXPECT_LT(WorstError_m(*solved, square.truths), 0.01);
+}
+
+TEST(LoopCloser, SearchesOnlyWhenSwitchedOnAndSomeWayAfterTheLastTime) {
+  EXPECT_FALSE(LoopCloser({.enabled = false}).IsDue(100.0));
+  LoopCloser closer({.every_m = 0.5});
+  EXPECT_TRUE(closer.IsDue(0.5));
+  closer.Search({}, {}, Pose::Identity(), 1.0);
+  EXPECT_FALSE(closer.IsDue(1.4));
+  EXPECT_TRUE(closer.IsDue(1.5));
+  EXPECT_GT(closer.SinceLoop_m(1.5), 1e300) << "none was ever found";
+}
+
+}  // namespace
+}  // namespace merlin
