@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::size_t kFormerMax = 30;  // key frames that the former map is made of
 constexpr double kCoarse_m = 0.4, kFine_m = 0.1;
+constexpr int kIterations = 30;
+constexpr double kStep = 2e-3;  // m and rad: pairs that change to and fro hold a fit from ending more finely
 
 // Indices of earlier visits' key frames that look at the same place, nearest view first.
 std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const Pose& T_map_base, double path_m,
@@ -60,12 +62,14 @@ std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<cons
   prior.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
   // Coarse first: a point finds its surface up to a voxel's edge away, whatever the walls' distance the estimate is off.
   const VoxelMap coarse = MapOf(keyframes, former, kCoarse_m), fine = MapOf(keyframes, former, kFine_m);
-  const IcpConfig wide{.kernel_m = 0.5 * kCoarse_m, .map_sigma_m = 0.1 * kCoarse_m};
+  const IcpConfig wide{
+      .iterations_max = kIterations, .step_converged = kStep, .kernel_m = 0.5 * kCoarse_m, .map_sigma_m = 0.1 * kCoarse_m};
+  const IcpConfig narrow{.iterations_max = kIterations, .step_converged = kStep};
   const RegisterResult guess = Register(points_base, Eigen::Vector3f::Zero(), coarse, prior, wide);
-  if (!guess.converged) return std::nullopt;
+  if (guess.inliers < wide.inliers_min) return std::nullopt;  // where it ends, to and fro, does not matter yet
   prior.information /= 4.0;  // it has done its work: the shape decides
   const PosePrior refined{guess.T_map_base, Matrix6d(prior.information)};
-  const RegisterResult fit = Register(points_base, Eigen::Vector3f::Zero(), fine, refined, {});
+  const RegisterResult fit = Register(points_base, Eigen::Vector3f::Zero(), fine, refined, narrow);
   if (!fit.converged || fit.rms_m > config.rms_max_m) return std::nullopt;
   const Eigen::Matrix2d covariance_m2 = fit.covariance.topLeftCorner<2, 2>();
   const double sigma_m = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance_m2).eigenvalues().maxCoeff());
