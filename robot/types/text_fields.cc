@@ -1,5 +1,6 @@
 #include "robot/types/text_fields.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -32,6 +33,13 @@ std::string Quoted(std::string_view field) {
   std::string shown = "'";
   for (const char c : field.substr(0, kLongest)) shown += c >= ' ' && c <= '~' ? c : '?';
   return shown + (field.size() > kLongest ? "...'" : "'");
+}
+
+std::string LinesOf(const std::vector<std::size_t>& lines) {
+  constexpr std::size_t kMost = 12;
+  std::string text = lines.size() == 1 ? "line " : "lines ";
+  for (std::size_t i = 0; i < std::min(kMost, lines.size()); ++i) text += (i ? ", " : "") + std::to_string(lines[i]);
+  return lines.size() > kMost ? text + " and more" : text;
 }
 
 std::string_view TextFields::Word() {

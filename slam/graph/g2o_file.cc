@@ -37,14 +37,6 @@ struct Ends {
   std::string_view text;
 };
 
-// "3 quaternions ... (lines 4, 7, 9)"
-std::string LinesOf(const std::vector<std::size_t>& lines) {
-  constexpr std::size_t kMost = 12;
-  std::string text = lines.size() == 1 ? "line " : "lines ";
-  for (std::size_t i = 0; i < std::min(kMost, lines.size()); ++i) text += (i ? ", " : "") + std::to_string(lines[i]);
-  return lines.size() > kMost ? text + " and more" : text;
-}
-
 Matrix6d Rescaled(Matrix6d information, double rotation_factor) {
   information.topRightCorner<3, 3>() *= rotation_factor;
   information.bottomLeftCorner<3, 3>() *= rotation_factor;
