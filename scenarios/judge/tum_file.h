@@ -11,8 +11,8 @@
 namespace merlin {
 
 struct TumFile {
-  Trajectory trajectory;
-  std::vector<std::string> warnings;  // quaternions off unit length, which are normalised
+  Trajectory trajectory{};
+  std::vector<std::string> warnings{};  // quaternions off unit length, which are normalised
 };
 
 // Reads the whole text; name: the file's, for the errors. Throws InputError with name and line for a field that is

@@ -15,10 +15,10 @@
 namespace merlin {
 
 struct G2oFile {
-  PoseGraph graph;                    // poses by ascending id; information over rotations [rad], see GraphEdge
-  std::vector<std::int64_t> ids;      // of the poses
+  PoseGraph graph{};                  // poses by ascending id; information over rotations [rad], see GraphEdge
+  std::vector<std::int64_t> ids{};    // of the poses
   bool has_poses = false;             // false: the file has no VERTEX, and the poses are chained along the edges
-  std::vector<std::string> warnings;  // one sentence each, with lines
+  std::vector<std::string> warnings{};// one sentence each, with lines
 };
 
 // Reads the whole text; name: the file's, for the errors. Throws InputError with name and line for a tag that is none of

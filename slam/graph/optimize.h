@@ -26,11 +26,11 @@ void Visit(Visitor& v, OptimizeConfig& c) {
 }
 
 struct OptimizeResult {
-  std::vector<Pose> poses;          // T_map_pose; fixed ones unchanged
+  std::vector<Pose> poses{};        // T_map_pose; fixed ones unchanged
   double objective = 0.0;           // robust edges at their robust cost
   int iterations = 0;
   bool converged = false;           // false: the last iterate, no worse than the start
-  std::vector<double> edge_weights; // of each edge at the end: 1, or of a robust one that disagrees less, down to 0
+  std::vector<double> edge_weights{};  // of each edge at the end: 1, or of a robust one that disagrees less, down to 0
 };
 
 // Starts at the graph's poses. Robust edges: dynamic covariance scaling (P. Agarwal et al., "Robust map optimization using

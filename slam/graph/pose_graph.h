@@ -20,9 +20,9 @@ struct GraphEdge {
 };
 
 struct PoseGraph {
-  std::vector<Pose> poses;  // T_map_pose
-  std::vector<GraphEdge> edges;
-  std::vector<std::size_t> fixed;  // poses that stay; empty: the first
+  std::vector<Pose> poses{};  // T_map_pose
+  std::vector<GraphEdge> edges{};
+  std::vector<std::size_t> fixed{};  // poses that stay; empty: the first
   bool planar = false;             // SE(2): poses and edges are x, y and yaw, the rest is taken as zero
 };
 
