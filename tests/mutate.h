@@ -23,8 +23,26 @@ class Mutator {
   std::size_t Below(std::size_t limit) { return limit == 0 ? 0 : generator_() % limit; }
 
   void Mutate(std::string& text) {
-    static const std::vector<std::string_view> kWords{"nan", "inf", "-1", "0", "1e308", "-1e-320", "9223372036854775807", "99999999999999999999",
-                                                      "FIX", "#", "\n", "\r\n", "\t", "1 ", "0x1p3", "--3", "+", ".", "1e", "\xff"};
+    static const std::vector<std::string_view> kWords{"nan",
+                                                      "inf",
+                                                      "-1",
+                                                      "0",
+                                                      "1e308",
+                                                      "-1e-320",
+                                                      "9223372036854775807",
+                                                      "99999999999999999999",
+                                                      "FIX",
+                                                      "#",
+                                                      "\n",
+                                                      "\r\n",
+                                                      "\t",
+                                                      "1 ",
+                                                      "0x1p3",
+                                                      "--3",
+                                                      "+",
+                                                      ".",
+                                                      "1e",
+                                                      "\xff"};
     const std::size_t at = Below(text.size() + 1), length = Below(30);
     switch (Below(6)) {
       case 0:

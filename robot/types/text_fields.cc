@@ -64,7 +64,8 @@ double TextFields::Number(std::string_view what, double size_max) {
   if (Parse(field, value) && std::abs(value) <= size_max) return value;
   std::ostringstream limit;
   limit << size_max;
-  throw InputError(where(), std::string(what), "a number between -" + limit.str() + " and " + limit.str(), Quoted(field));
+  throw InputError(where(), std::string(what), "a number between -" + limit.str() + " and " + limit.str(),
+                   Quoted(field));
 }
 
 std::int64_t TextFields::Whole(std::string_view what) {

@@ -28,7 +28,8 @@ std::vector<Match> Matches(const Trajectory& shorter, const Trajectory& longer, 
   for (std::size_t i = 0; i < shorter.size(); ++i) {
     const Time stamp = shorter[i].stamp;
     auto nearest = std::ranges::lower_bound(longer, stamp, {}, &StampedPose::stamp);
-    if (nearest == longer.end() || (nearest != longer.begin() && stamp - (nearest - 1)->stamp <= nearest->stamp - stamp))
+    if (nearest == longer.end() ||
+        (nearest != longer.begin() && stamp - (nearest - 1)->stamp <= nearest->stamp - stamp))
       --nearest;
     const Match match{.shorter = i,
                       .longer = static_cast<std::size_t>(nearest - longer.begin()),
@@ -66,18 +67,20 @@ TumFile ParseTum(std::string_view text, const std::string& name) {
   });
   if (file.trajectory.empty()) throw InputError(name, "no poses", "lines 'stamp x y z qx qy qz qw'");
   if (!off_unit.empty())
-    file.warnings.push_back(
-        fmt::format("{}: {} quaternion{} off unit length, normalised ({})", name, off_unit.size(),
-                    off_unit.size() == 1 ? "" : "s", LinesOf(off_unit)));
+    file.warnings.push_back(fmt::format("{}: {} quaternion{} off unit length, normalised ({})", name, off_unit.size(),
+                                        off_unit.size() == 1 ? "" : "s", LinesOf(off_unit)));
   return file;
 }
 
-std::vector<PosePair> PairAtNearestStamps(const Trajectory& truth, const Trajectory& estimate, Duration difference_max) {
+std::vector<PosePair> PairAtNearestStamps(const Trajectory& truth, const Trajectory& estimate,
+                                          Duration difference_max) {
   std::vector<PosePair> pairs;
   if (truth.empty() || estimate.empty()) return pairs;
   const bool from_truth = truth.size() < estimate.size();
-  for (const Match& match : from_truth ? Matches(truth, estimate, difference_max) : Matches(estimate, truth, difference_max))
-    pairs.push_back({truth[from_truth ? match.shorter : match.longer].T, estimate[from_truth ? match.longer : match.shorter].T});
+  for (const Match& match :
+       from_truth ? Matches(truth, estimate, difference_max) : Matches(estimate, truth, difference_max))
+    pairs.push_back(
+        {truth[from_truth ? match.shorter : match.longer].T, estimate[from_truth ? match.longer : match.shorter].T});
   return pairs;
 }
 

@@ -1,4 +1,5 @@
-// Trajectories of the TUM RGB-D benchmark: "stamp_s x y z qx qy qz qw" a line, "#" starts a comment. (Written: writers.h.)
+// Trajectories of the TUM RGB-D benchmark: "stamp_s x y z qx qy qz qw" a line, "#" starts a comment. (Written:
+// writers.h.)
 #pragma once
 
 #include <string>
@@ -20,9 +21,9 @@ struct TumFile {
 // before it, and a text without poses.
 TumFile ParseTum(std::string_view text, const std::string& name);
 
-// Each pose of the one that has fewer (the estimate, of as many) with the other's nearest in time, the earlier of equals,
-// at most the difference away: evo's rule. But one to one: a pose that two are nearest to goes to the nearer (the
-// earlier of equals), where evo gives it to both.
+// Each pose of the one that has fewer (the estimate, of as many) with the other's nearest in time, the earlier of
+// equals, at most the difference away: evo's rule. But one to one: a pose that two are nearest to goes to the nearer
+// (the earlier of equals), where evo gives it to both.
 std::vector<PosePair> PairAtNearestStamps(const Trajectory& truth, const Trajectory& estimate, Duration difference_max);
 
 }  // namespace merlin

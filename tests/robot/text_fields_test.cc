@@ -20,10 +20,11 @@ TEST(TextFields, AreWhatLiesBetweenBlanks) {
 }
 
 TEST(TextFields, TakeNumbersAndNothingElse) {
-  for (const auto& [text, number] : {std::pair("0", 0.0), std::pair("-1.5e-3", -1.5e-3), std::pair("+2", 2.0), std::pair(".5", 0.5),
-                                     std::pair("5.", 5.0), std::pair("1e2", 100.0)})
+  for (const auto& [text, number] : {std::pair("0", 0.0), std::pair("-1.5e-3", -1.5e-3), std::pair("+2", 2.0),
+                                     std::pair(".5", 0.5), std::pair("5.", 5.0), std::pair("1e2", 100.0)})
     EXPECT_EQ(TextFields(text, "f", 1).Number("x", 1e3), number) << text;
-  for (const char* text : {"", "nan", "-nan", "inf", "1e4", "-1e4", "1e999", "0x10", "1,5", "1e", "--1", "+-1", "+", "1.5x", "\xff"})
+  for (const char* text :
+       {"", "nan", "-nan", "inf", "1e4", "-1e4", "1e999", "0x10", "1,5", "1e", "--1", "+-1", "+", "1.5x", "\xff"})
     EXPECT_THROW(TextFields(text, "f", 1).Number("x", 1e3), InputError) << text;
   for (const char* text : {"", "1.0", "1e3", "9223372036854775808", "x", "-", "+-1"})
     EXPECT_THROW(TextFields(text, "f", 1).Whole("n"), InputError) << text;

@@ -90,7 +90,8 @@ TEST(OptimizeCli, RefusesBadInputWithOneSentenceAndWritesNothing) {
 TEST(OptimizeCli, SaysWhatItMended) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "bad.g2o") << kSquare << "EDGE_SE2 1 3 0 0 3.1 1 0 0 -1 0 100\n";
-  EXPECT_NE(Merlin("optimize bad.g2o", folder.path()).said.find("warning: bad.g2o: 1 information matrix"), std::string::npos);
+  EXPECT_NE(Merlin("optimize bad.g2o", folder.path()).said.find("warning: bad.g2o: 1 information matrix"),
+            std::string::npos);
   EXPECT_EQ(Json("optimize bad.g2o", folder.path())["warnings"].size(), 1u);
 }
 
@@ -109,7 +110,8 @@ struct Straight {
     std::ofstream truth(folder.path() / "truth.tum"), estimate(folder.path() / "estimate.tum");
     for (int i = 0; i <= 60; ++i) {
       truth << i << " " << 0.05 * i << " " << (i % 3 == 0) << " 0 0 0 0 1\n";
-      estimate << i + 0.001 << " " << 5 - (i % 3 == 0) << " " << 0.05 * i << " " << (i % 2 ? 0.01 : -0.01) << " 0 0 0.70710678118654752 0.70710678118654752\n";
+      estimate << i + 0.001 << " " << 5 - (i % 3 == 0) << " " << 0.05 * i << " " << (i % 2 ? 0.01 : -0.01)
+               << " 0 0 0.70710678118654752 0.70710678118654752\n";
     }
   }
 };
@@ -148,12 +150,14 @@ TEST(EvalCli, RefusesBadInputWithOneSentence) {
   EXPECT_EQ(Merlin("eval truth.tum truth.tum --max-difference 0", folder).code, 0);
 }
 
-// Figures by evo 1.38.1: evo_ape -a [-s], evo_rpe --delta 1 --delta_unit m --all_pairs --pairs_from_reference, --t_max_diff 0.02.
+// Figures by evo 1.38.1: evo_ape -a [-s], evo_rpe --delta 1 --delta_unit m --all_pairs --pairs_from_reference,
+// --t_max_diff 0.02.
 TEST(EvalCli, AgreesWithEvoOnARealTrajectory) {
   const auto data = SharedData("trajectories");
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real trajectories: " << data << " does not exist";
   const TemporaryFolder folder;
-  const std::string files = "eval '" + (data / "freiburg1_xyz-groundtruth.txt").string() + "' '" + (data / "freiburg1_xyz-rgbdslam.txt").string() + "'";
+  const std::string files = "eval '" + (data / "freiburg1_xyz-groundtruth.txt").string() + "' '" +
+                            (data / "freiburg1_xyz-rgbdslam.txt").string() + "'";
   const nlohmann::json figures = Json(files, folder.path());
   EXPECT_EQ(figures["pairs"], 786);
   EXPECT_NEAR(figures["ate_rmse_m"], 0.013473468, 1e-9);
@@ -174,13 +178,15 @@ double Figure(const std::string& said, const std::string& name) {
   return at == std::string::npos ? NAN : std::stod(said.substr(at + name.size() + 1));
 }
 
-// Two minutes of a random walk seen at other times, at another scale, with noise: every figure as evo prints it, to its six
-// digits.
+// Two minutes of a random walk seen at other times, at another scale, with noise: every figure as evo prints it, to its
+// six digits.
 TEST(EvalCli, AgreesWithEvoOnARandomWalk) {
   const TemporaryFolder folder;
   std::mt19937 generator(1);
   std::normal_distribution<double> normal;
-  const auto tangent = [&](double size) { return Vector6d(size * Vector6d::NullaryExpr([&] { return normal(generator); })); };
+  const auto tangent = [&](double size) {
+    return Vector6d(size * Vector6d::NullaryExpr([&] { return normal(generator); }));
+  };
   Trajectory truth, estimate;
   Pose pose = Exp(tangent(1.0));
   for (int i = 0; i < 1200; ++i) {

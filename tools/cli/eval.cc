@@ -52,8 +52,11 @@ Evaluation Evaluate(const Arguments& arguments) {
   const std::optional<Ate> ate = AlignAndAte(pairs, AlignmentOf(arguments.align));
   if (!ate) throw InputError(arguments.estimate, "nothing tells its scale: all its positions are the same");
 
-  Evaluation evaluation{.warnings = truth.warnings, .truth_poses = truth.trajectory.size(),
-                        .estimate_poses = estimate.trajectory.size(), .pairs = pairs.size(), .ate = *ate};
+  Evaluation evaluation{.warnings = truth.warnings,
+                        .truth_poses = truth.trajectory.size(),
+                        .estimate_poses = estimate.trajectory.size(),
+                        .pairs = pairs.size(),
+                        .ate = *ate};
   evaluation.warnings.insert(evaluation.warnings.end(), estimate.warnings.begin(), estimate.warnings.end());
   RelativeErrors errors = ErrorsOver(pairs, arguments.delta_m, ate->scale);
   evaluation.relative_pairs = errors.translation_m.size();
@@ -84,7 +87,8 @@ void PrintJson(const Arguments& arguments, const Evaluation& evaluation) {
                                {"pairs", evaluation.pairs},
                                {"align", arguments.align},
                                {"scale", evaluation.ate.scale}};
-  const auto add = [&whole](const std::string& prefix, const std::string& unit, const std::optional<ErrorStatistics>& error) {
+  const auto add = [&whole](const std::string& prefix, const std::string& unit,
+                            const std::optional<ErrorStatistics>& error) {
     VisitFigures(error.value_or(ErrorStatistics{}), [&](const char* name, double value) {
       nlohmann::ordered_json& figure = whole[prefix + name + unit];
       if (error) figure = value;
@@ -143,11 +147,13 @@ void AddEval(CLI::App& app, int& exit_code) {
   CLI::App* eval = app.add_subcommand("eval", "how far an estimated trajectory lies from the true one: ATE, RPE");
   eval->add_option("truth", arguments->truth, "'stamp_s x y z qx qy qz qw' a line (TUM)")->required();
   eval->add_option("estimate", arguments->estimate, "the same")->required();
-  eval->add_option("--align", arguments->align, "what is done to the estimate before ATE: se3, sim3 (scale too) or none; default se3")
+  eval->add_option("--align", arguments->align,
+                   "what is done to the estimate before ATE: se3, sim3 (scale too) or none; default se3")
       ->check(CLI::IsMember({"se3", "sim3", "none"}));
   eval->add_option("--delta", arguments->delta_m, "length of true path that RPE is taken over [m]; default 1")
       ->check(Between(1e-6, 1e6));
-  eval->add_option("--max-difference", arguments->max_difference_s, "most that stamps of a pair may differ [s]; default 0.02")
+  eval->add_option("--max-difference", arguments->max_difference_s,
+                   "most that stamps of a pair may differ [s]; default 0.02")
       ->check(Between(0.0, 1e6));
   eval->add_flag("--json", arguments->json, "for machines");
   eval->callback([arguments, &exit_code] { exit_code = Eval(*arguments); });

@@ -1,4 +1,6 @@
 // `merlin optimize`: solves a pose graph, and says what both objectives are there.
+#include "slam/graph/optimize.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include "scenarios/judge/writers.h"
 #include "slam/graph/g2o_file.h"
 #include "slam/graph/initial_poses.h"
-#include "slam/graph/optimize.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/read_file.h"
 
@@ -38,7 +39,8 @@ Solution Solve(const Arguments& arguments) {
   if (auto poses = ChordalPoses(graph))
     graph.poses = *std::move(poses);
   else
-    solution.file.warnings.push_back(arguments.graph + ": edges of no weight leave the chordal start open; started at the " +
+    solution.file.warnings.push_back(arguments.graph +
+                                     ": edges of no weight leave the chordal start open; started at the " +
                                      (solution.file.has_poses ? "file's poses" : "poses chained along the edges"));
   const double start_s = Now_s();
   const Objective objective = arguments.objective == "a" ? Objective::kA : Objective::kB;
@@ -55,18 +57,11 @@ void Print(const Arguments& arguments, const Solution& solution) {
   const OptimizeResult& result = solution.result;
   const double a = Evaluate(graph, Objective::kA), b = Evaluate(graph, Objective::kB);
   if (arguments.json) {
-    const nlohmann::ordered_json whole{{"file", arguments.graph},
-                                       {"poses", graph.poses.size()},
-                                       {"edges", graph.edges.size()},
-                                       {"planar", graph.planar},
-                                       {"objective", arguments.objective},
-                                       {"objective_a", a},
-                                       {"objective_b", b},
-                                       {"converged", result.converged},
-                                       {"iterations", result.iterations},
-                                       {"time_s", solution.time_s},
-                                       {"iteration_ms", solution.iteration_ms},
-                                       {"warnings", solution.file.warnings}};
+    const nlohmann::ordered_json whole{
+        {"file", arguments.graph},   {"poses", graph.poses.size()},           {"edges", graph.edges.size()},
+        {"planar", graph.planar},    {"objective", arguments.objective},      {"objective_a", a},
+        {"objective_b", b},          {"converged", result.converged},         {"iterations", result.iterations},
+        {"time_s", solution.time_s}, {"iteration_ms", solution.iteration_ms}, {"warnings", solution.file.warnings}};
     fmt::print("{}\n", whole.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return;
   }
@@ -75,7 +70,8 @@ void Print(const Arguments& arguments, const Solution& solution) {
              graph.planar ? "plane" : "space", arguments.objective == "a" ? "A" : "B");
   fmt::print("  objective A  {:.9g}\n  objective B  {:.9g}\n", a, b);
   fmt::print("  {} after {} iterations of {:.2f} ms; {:.3f} s with reading and chordal start\n",
-             result.converged ? "converged" : "NOT converged", result.iterations, solution.iteration_ms, solution.time_s);
+             result.converged ? "converged" : "NOT converged", result.iterations, solution.iteration_ms,
+             solution.time_s);
   if (!arguments.out.empty()) fmt::print("file: {}\n", arguments.out);
 }
 
@@ -92,7 +88,9 @@ int RunOptimize(const Arguments& arguments) {
 void AddOptimize(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* optimize = app.add_subcommand("optimize", "solves a pose graph (g2o); exit 1 where it does not converge");
-  optimize->add_option("graph", arguments->graph, "VERTEX_SE2 and EDGE_SE2, or the same with SE3:QUAT; FIX; VERTEX may be missing")
+  optimize
+      ->add_option("graph", arguments->graph,
+                   "VERTEX_SE2 and EDGE_SE2, or the same with SE3:QUAT; FIX; VERTEX may be missing")
       ->required();
   optimize
       ->add_option("--objective", arguments->objective,

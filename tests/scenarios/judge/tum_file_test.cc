@@ -33,7 +33,8 @@ TEST(TumFile, ReadsStampsAndPoses) {
 TEST(TumFile, ReadsWhatIsWritten) {
   Trajectory trajectory;
   for (int i = 0; i < 50; ++i)
-    trajectory.push_back({Time(1'000'000'000 + 50'000'001LL * i), Exp((Vector6d() << i, -i, 0.1, 0.1 * i, 0.2, -0.1 * i).finished())});
+    trajectory.push_back(
+        {Time(1'000'000'000 + 50'000'001LL * i), Exp((Vector6d() << i, -i, 0.1, 0.1 * i, 0.2, -0.1 * i).finished())});
   const TumFile file = ParseTum(ToTum(trajectory), "t.tum");
   ASSERT_EQ(file.trajectory.size(), trajectory.size());
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
@@ -92,7 +93,8 @@ TEST(TumFile, SurvivesBrokenTexts) {
 Trajectory At(const std::vector<int>& stamps_ms) {
   Trajectory trajectory;
   for (const int stamp_ms : stamps_ms)
-    trajectory.push_back({std::chrono::milliseconds(stamp_ms), FromXyYaw(static_cast<double>(trajectory.size()), 0.0, 0.0)});
+    trajectory.push_back(
+        {std::chrono::milliseconds(stamp_ms), FromXyYaw(static_cast<double>(trajectory.size()), 0.0, 0.0)});
   return trajectory;
 }
 
@@ -100,7 +102,8 @@ using Indices = std::vector<std::pair<int, int>>;
 
 Indices Paired(const std::vector<int>& truth_ms, const std::vector<int>& estimate_ms, int difference_ms) {
   Indices indices;
-  for (const PosePair& pair : PairAtNearestStamps(At(truth_ms), At(estimate_ms), std::chrono::milliseconds(difference_ms)))
+  for (const PosePair& pair :
+       PairAtNearestStamps(At(truth_ms), At(estimate_ms), std::chrono::milliseconds(difference_ms)))
     indices.emplace_back(pair.T_world_base.translation().x(), pair.T_map_base.translation().x());
   return indices;
 }

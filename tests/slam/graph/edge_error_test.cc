@@ -11,14 +11,16 @@ constexpr double kPi = std::numbers::pi;
 
 // Derivatives by central differences: of the error by a step of one end.
 template <class Group>
-typename Group::Matrix Differences(const Pose& from, const Pose& to, const Pose& measured, bool by_from, PlanarRotation rotation) {
+typename Group::Matrix Differences(const Pose& from, const Pose& to, const Pose& measured, bool by_from,
+                                   PlanarRotation rotation) {
   constexpr double kStep = 1e-6;
   typename Group::Matrix J;
   for (int i = 0; i < Group::kSize; ++i) {
     const auto error = [&](double h) {
       const typename Group::Vector step = h * Group::Vector::Unit(i);
       const auto a = Group::Of(from), b = Group::Of(to);
-      return Group::Error(by_from ? Group::Moved(a, step) : a, by_from ? b : Group::Moved(b, step), Group::Of(measured), rotation);
+      return Group::Error(by_from ? Group::Moved(a, step) : a, by_from ? b : Group::Moved(b, step), Group::Of(measured),
+                          rotation);
     };
     J.col(i) = (error(kStep) - error(-kStep)) / (2.0 * kStep);
   }
@@ -60,9 +62,11 @@ TEST(EdgeError, HasTheDerivativesThatDifferencesFindInThePlane) {
 TEST(EdgeError, IsThatOfTheMatrices) {
   RandomGraphs random(3);
   for (int i = 0; i < 20; ++i) {
-    const Pose from = Exp(random.Tangent(3.0, 1.5)), to = Exp(random.Tangent(3.0, 1.5)), measured = Exp(random.Tangent(1.0, 1.0));
+    const Pose from = Exp(random.Tangent(3.0, 1.5)), to = Exp(random.Tangent(3.0, 1.5)),
+               measured = Exp(random.Tangent(1.0, 1.0));
     const Pose E = measured.inverse() * from.inverse() * to;
-    const Vector6d error = Spatial::Error(Spatial::Of(from), Spatial::Of(to), Spatial::Of(measured), PlanarRotation::kAngle);
+    const Vector6d error =
+        Spatial::Error(Spatial::Of(from), Spatial::Of(to), Spatial::Of(measured), PlanarRotation::kAngle);
     EXPECT_LT((error.head<3>() - E.translation()).norm(), 1e-12);
     const Eigen::Vector3d w = LogSo3(E.linear());
     EXPECT_LT((error.tail<3>() - 2.0 * std::sin(0.5 * w.norm()) * w.normalized()).norm(), 1e-12);
@@ -74,7 +78,8 @@ TEST(EdgeError, WrapsTheAngle) {
   const Eigen::Vector3d error = Planar::Error(pose(3.1), pose(-3.1), pose(0.0), PlanarRotation::kAngle);
   EXPECT_NEAR(error.z(), 2.0 * kPi - 6.2, 1e-14);
   const Pose half_turn(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()));
-  const Vector6d spatial = Spatial::Error(Spatial::Of(Pose::Identity()), Spatial::Of(half_turn), Spatial::Of(Pose::Identity()), {});
+  const Vector6d spatial =
+      Spatial::Error(Spatial::Of(Pose::Identity()), Spatial::Of(half_turn), Spatial::Of(Pose::Identity()), {});
   EXPECT_NEAR(spatial.tail<3>().norm(), 2.0, 1e-14);
 }
 

@@ -52,8 +52,7 @@ TEST(G2oFile, ReadsPosesByIdAndEdgesInThePlane) {
   Eigen::Matrix3d information;
   information << 11, 12, 13, 12, 22, 23, 13, 23, 33;
   const int rows[] = {0, 1, 5};
-  // 11 * 22 < 12 * 12: not positive semidefinite. See below; here only what lies where.
-  EXPECT_EQ(file.graph.edges[1].information(rows, rows), (500.0 * Eigen::Matrix3d::Identity()).eval());
+  EXPECT_EQ(edge.information(rows, rows), information);
   EXPECT_EQ(edge.information.row(2).norm(), 0.0);
 }
 
@@ -79,14 +78,16 @@ TEST(G2oFile, SharesOutSpatialInformationRowByRow) {
 }
 
 TEST(G2oFile, ChainsPosesThatTheFileDoesNotHave) {
-  const G2oFile file = ParseG2o("EDGE_SE2 5 6 1 0 1.5707963267948966 1 0 0 1 0 1\nEDGE_SE2 6 7 1 0 0 1 0 0 1 0 1\n", "f");
+  const G2oFile file =
+      ParseG2o("EDGE_SE2 5 6 1 0 1.5707963267948966 1 0 0 1 0 1\nEDGE_SE2 6 7 1 0 0 1 0 0 1 0 1\n", "f");
   EXPECT_FALSE(file.has_poses);
   ASSERT_EQ(file.graph.poses.size(), 3u);
   EXPECT_LT((file.graph.poses[2].translation() - Eigen::Vector3d(1, 1, 0)).norm(), 1e-15);
 }
 
 TEST(G2oFile, TakesWindowsLinesPlusSignsAndNoLastNewline) {
-  const G2oFile file = ParseG2o("EDGE_SE2 0 1 +1.5 -2e0 .5 1 0 0 1 0 1\r\n\r\n#\r\nEDGE_SE2\t1  2 1 0 0 1 0 0 1 0 1 ", "f");
+  const G2oFile file =
+      ParseG2o("EDGE_SE2 0 1 +1.5 -2e0 .5 1 0 0 1 0 1\r\n\r\n#\r\nEDGE_SE2\t1  2 1 0 0 1 0 0 1 0 1 ", "f");
   EXPECT_EQ(file.graph.edges[0].T_from_to.translation(), Eigen::Vector3d(1.5, -2.0, 0.0));
   EXPECT_EQ(file.graph.poses.size(), 3u);
 }
@@ -106,12 +107,14 @@ TEST(G2oFile, RefusesWithTheLine) {
   ExpectRefused(kPlanar + "EDGE_SE2 10 20 nan 0 0 1 0 0 1 0 1\n", "f.g2o:10: x; expected a number");
   ExpectRefused(kPlanar + "EDGE_SE2 10 20 1 0 0 inf 0 0 1 0 1\n", "f.g2o:10: the information");
   ExpectRefused(kPlanar + "EDGE_SE2 10 20 1 1e300 0 1 0 0 1 0 1\n", "f.g2o:10: y");
-  ExpectRefused(kPlanar + "EDGE_SE2 10 2.5 1 0 0 1 0 0 1 0 1\n", "f.g2o:10: the second pose's id; expected a whole number, got '2.5'");
+  ExpectRefused(kPlanar + "EDGE_SE2 10 2.5 1 0 0 1 0 0 1 0 1\n",
+                "f.g2o:10: the second pose's id; expected a whole number, got '2.5'");
   ExpectRefused(kPlanar + "EDGE_SE2 10 99999999999999999999 1 0 0 1 0 0 1 0 1\n", "f.g2o:10: the second pose's id");
   ExpectRefused(kPlanar + "VERTEX_SE2 40 1 1 1\n", "f.g2o:10: no chain of edges joins pose 40 to pose 10");
   ExpectRefused(kPlanar + kSpatial, "f.g2o:10: planar (SE2) and spatial (SE3)");
   ExpectRefused("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 0\n", "f.g2o:1: a quaternion of no length");
-  ExpectRefused("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 2 3 1 0 0 1 0 0 1 0 1\n", "f.g2o:2: no chain of edges joins pose 2");
+  ExpectRefused("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 2 3 1 0 0 1 0 0 1 0 1\n",
+                "f.g2o:2: no chain of edges joins pose 2");
   ExpectRefused("FIX 0 1\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n", "f.g2o:1: more than one FIX");
   ExpectRefused(std::string(1000, 'x') + "\xff\x01", "f.g2o:1: unknown tag");
 }
@@ -126,13 +129,19 @@ TEST(G2oFile, NamesWhatItMends) {
   std::string text = kPlanar + "EDGE_SE2 10 20 1 0 0 1 0 0 -1 0 1\nEDGE_SE2 10 20 1 0 0 1 0 0 -1 0 1\n";
   G2oFile file = ParseG2o(text, "f.g2o");
   ASSERT_EQ(file.warnings.size(), 2u);
-  EXPECT_EQ(file.warnings[0], "f.g2o: 3 information matrices are not positive semidefinite; negative eigenvalues were set to zero (lines 6, 10, 11)");
+  EXPECT_EQ(file.warnings[0],
+            "f.g2o: 2 information matrices are not positive semidefinite; negative eigenvalues were set to zero (lines "
+            "10, 11)");
   EXPECT_EQ(file.warnings[1], "f.g2o: 1 edge is said before, word for word; counted again (line 11)");
-  EXPECT_LT((Planar::Part(file.graph.edges[3].information) - Eigen::Vector3d(1, 0, 1).asDiagonal().toDenseMatrix()).norm(), 1e-15);
+  EXPECT_LT(
+      (Planar::Part(file.graph.edges[3].information) - Eigen::Vector3d(1, 0, 1).asDiagonal().toDenseMatrix()).norm(),
+      1e-15);
   for (const GraphEdge& edge : file.graph.edges)
     EXPECT_GE(Eigen::SelfAdjointEigenSolver<Matrix6d>(edge.information).eigenvalues().minCoeff(), -1e-12);
 
-  file = ParseG2o("EDGE_SE3:QUAT 0 1 1 2 3 0 0 1.2 1.6" + kUnit + "\nEDGE_SE3:QUAT 1 2 1 2 3 0 0 0.600001 0.8" + kUnit + "\n", "f.g2o");
+  file = ParseG2o(
+      "EDGE_SE3:QUAT 0 1 1 2 3 0 0 1.2 1.6" + kUnit + "\nEDGE_SE3:QUAT 1 2 1 2 3 0 0 0.600001 0.8" + kUnit + "\n",
+      "f.g2o");
   ASSERT_EQ(file.warnings.size(), 1u);
   EXPECT_EQ(file.warnings[0], "f.g2o: 1 quaternion is off unit length; normalised (line 1)");
   EXPECT_TRUE(file.graph.edges[0].T_from_to.linear().isUnitary(1e-14));
@@ -162,7 +171,8 @@ TEST(G2oFile, WritesWhatItReadsAgain) {
 
 // Every text is either taken, and then solved without a fault, or refused by one sentence.
 TEST(G2oFile, SurvivesBrokenTexts) {
-  const std::string seeds[] = {kPlanar, kSpatial, "EDGE_SE2 5 6 1 0 1.5 1 0 0 1 0 1\nEDGE_SE2 6 7 1 0 0 1 0 0 1 0 1\nFIX 6\n"};
+  const std::string seeds[] = {kPlanar, kSpatial,
+                               "EDGE_SE2 5 6 1 0 1.5 1 0 0 1 0 1\nEDGE_SE2 6 7 1 0 0 1 0 0 1 0 1\nFIX 6\n"};
   Mutator mutator(1);
   int taken = 0;
   constexpr int kTexts = 20000;

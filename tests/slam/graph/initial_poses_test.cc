@@ -34,17 +34,19 @@ TEST(InitialPoses, ChainFollowsOdometryAndNotLoops) {
   PoseGraph graph{.poses = std::vector<Pose>(4, Pose::Identity()), .edges = {}, .fixed = {}, .planar = true};
   graph.edges.push_back({.from = 0, .to = 3, .T_from_to = FromXyYaw(99.0, 0.0, 0.0)});
   graph.edges.push_back({.from = 0, .to = 2, .T_from_to = FromXyYaw(99.0, 0.0, 0.0)});
-  for (std::size_t i = 3; i > 0; --i) graph.edges.push_back({.from = i, .to = i - 1, .T_from_to = FromXyYaw(-1.0, 0.0, 0.0)});
+  for (std::size_t i = 3; i > 0; --i)
+    graph.edges.push_back({.from = i, .to = i - 1, .T_from_to = FromXyYaw(-1.0, 0.0, 0.0)});
   const std::vector<Pose> poses = ChainedPoses(graph);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(poses[i].translation().x(), i, 1e-15);
 }
 
-// Closing a turn that is 0.09 rad too long: each of nine equal edges takes 0.01 rad of it, as to first order the relaxed
-// rotations do exactly by symmetry; far from the 0.08 that the chain leaves to the last.
+// Closing a turn that is 0.09 rad too long: each of nine equal edges takes 0.01 rad of it, as to first order the
+// relaxed rotations do exactly by symmetry; far from the 0.08 that the chain leaves to the last.
 TEST(InitialPoses, ChordalSharesTheMisfit) {
   PoseGraph graph{.poses = std::vector<Pose>(9, Pose::Identity()), .edges = {}, .fixed = {}, .planar = true};
   const double step_rad = 2.0 * std::numbers::pi / 9 + 0.01;
-  for (std::size_t i = 0; i < 9; ++i) graph.edges.push_back({.from = i, .to = (i + 1) % 9, .T_from_to = FromXyYaw(1.0, 0.0, step_rad)});
+  for (std::size_t i = 0; i < 9; ++i)
+    graph.edges.push_back({.from = i, .to = (i + 1) % 9, .T_from_to = FromXyYaw(1.0, 0.0, step_rad)});
   const auto poses = ChordalPoses(graph);
   ASSERT_TRUE(poses);
   for (std::size_t i = 0; i < 9; ++i)

@@ -30,18 +30,22 @@ TEST(Objective, AIsTheSumOverMatrices) {
   }
 }
 
-// By hand: the second pose lies 0.1 m ahead of where the edge has it in x, 0.2 rad turned: chi2 = 100 * 0.01 + 2 * 5 * 0.1 *
-// 0.2 + 50 * 0.04.
+// By hand: the second pose lies 0.1 m ahead of where the edge has it in x, 0.2 rad turned: chi2 = 100 * 0.01 + 2 * 5 *
+// 0.1 * 0.2 + 50 * 0.04.
 TEST(Objective, BOfTwoPosesInThePlaneByHand) {
-  const G2oFile file = ParseG2o("VERTEX_SE2 0 5 5 1.5707963267948966\nVERTEX_SE2 1 5 6.1 1.7707963267948966\n"
-                                "EDGE_SE2 0 1 1 0 0 100 0 5 80 0 50\n", "f");
+  const G2oFile file = ParseG2o(
+      "VERTEX_SE2 0 5 5 1.5707963267948966\nVERTEX_SE2 1 5 6.1 1.7707963267948966\n"
+      "EDGE_SE2 0 1 1 0 0 100 0 5 80 0 50\n",
+      "f");
   EXPECT_NEAR(Evaluate(file.graph, Objective::kB), 1.0 + 0.2 + 2.0, 1e-12);
 }
 
 // By hand: a turn of 0.4 rad about x has the vector part (sin 0.2, 0, 0).
 TEST(Objective, BOfTwoPosesInSpaceByHand) {
-  const G2oFile file = ParseG2o("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 1.5 0 0 0.19866933079506122 0 0 0.98006657784124163\n"
-                                "EDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1 4 0 0 3 0 0 4 0 0 0 0 4 0 0 0 70 0 0 70 0 70\n", "f");
+  const G2oFile file = ParseG2o(
+      "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 1.5 0 0 0.19866933079506122 0 0 0.98006657784124163\n"
+      "EDGE_SE3:QUAT 0 1 1 0 0 0 0 0 1 4 0 0 3 0 0 4 0 0 0 0 4 0 0 0 70 0 0 70 0 70\n",
+      "f");
   const double s = std::sin(0.2);
   EXPECT_NEAR(Evaluate(file.graph, Objective::kB), 4 * 0.25 + 2 * 3 * 0.5 * s + 70 * s * s, 1e-12);
 }

@@ -27,7 +27,8 @@ TEST(Optimize, FindsPosesThatAgreeWithEveryEdge) {
     RandomGraphs random(1);
     PoseGraph graph = random.Walk(30, 0.0, planar);
     const std::vector<Pose> truth = graph.poses;
-    for (std::size_t i = 1; i < graph.poses.size(); ++i) graph.poses[i] = graph.poses[i] * Exp(random.Tangent(0.2, 0.2, planar));
+    for (std::size_t i = 1; i < graph.poses.size(); ++i)
+      graph.poses[i] = graph.poses[i] * Exp(random.Tangent(0.2, 0.2, planar));
     for (const Objective objective : {Objective::kA, Objective::kB}) {
       const OptimizeResult result = Optimize(graph, {}, objective);
       EXPECT_TRUE(result.converged);
@@ -56,7 +57,8 @@ TEST(Optimize, EndsWhereDifferencesFindNoSlope) {
           const Vector6d step = 1e-4 * Vector6d::Unit(i);
           const double slope = (value(pose, step) - value(pose, -step)) / 2e-4;
           const double curve = (value(pose, step) + value(pose, -step) - 2.0 * result.objective) / 1e-8;
-          EXPECT_LT(std::abs(slope), 1e-4 * curve) << planar << " " << pose << " " << i;  // 0.1 mm, 0.1 mrad away at most
+          EXPECT_LT(std::abs(slope), 1e-4 * curve)
+              << planar << " " << pose << " " << i;  // 0.1 mm, 0.1 mrad away at most
           EXPECT_GT(curve, 0.0);
         }
     }
@@ -81,7 +83,9 @@ TEST(Optimize, SolvesLuAndMiliosNetworkAroundACentralObject) {
     const Eigen::Matrix2d C_inverse = root * root.transpose();  // correlated
     const Pose step = graph.poses[from].inverse() * graph.poses[to];
     const Eigen::Vector2d D = step.translation().head<2>() + Eigen::Vector2d(random.Normal(0.1), random.Normal(0.1));
-    GraphEdge edge{.from = static_cast<std::size_t>(from), .to = static_cast<std::size_t>(to), .T_from_to = FromXyYaw(D.x(), D.y(), 0.0)};
+    GraphEdge edge{.from = static_cast<std::size_t>(from),
+                   .to = static_cast<std::size_t>(to),
+                   .T_from_to = FromXyYaw(D.x(), D.y(), 0.0)};
     edge.information = 1e9 * Matrix6d::Identity();  // the heading, known
     edge.information.topLeftCorner<2, 2>() = C_inverse;
     graph.edges.push_back(edge);
@@ -115,7 +119,8 @@ TEST(Optimize, WeighsByTheWholeInformationMatrix) {
 TEST(Optimize, SharesAMisfitEquallyAcrossHalfATurn) {
   PoseGraph graph{.poses = {}, .edges = {}, .fixed = {}, .planar = true};
   for (int i = 0; i < 9; ++i) graph.poses.push_back(FromXyYaw(0.0, 0.0, 0.8 * i));
-  for (std::size_t i = 0; i < 8; ++i) graph.edges.push_back({.from = i, .to = i + 1, .T_from_to = FromXyYaw(0.0, 0.0, 0.8)});
+  for (std::size_t i = 0; i < 8; ++i)
+    graph.edges.push_back({.from = i, .to = i + 1, .T_from_to = FromXyYaw(0.0, 0.0, 0.8)});
   graph.edges.push_back({.from = 8, .to = 0, .T_from_to = FromXyYaw(0.0, 0.0, 2.0 * kPi - 6.4 + 0.09)});
   const OptimizeResult result = Optimize(graph, {});
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(WrapPi(Yaw(result.poses[i]) - (0.8 - 0.01) * i), 0.0, 1e-9) << i;
@@ -192,13 +197,16 @@ Laps DriveTwoLaps(RandomGraphs& random) {
   laps.truth = {Pose::Identity()};
   const auto information = [](double sigma_m, double sigma_rad) {
     Vector6d weights;
-    weights << Eigen::Vector3d::Constant(1.0 / (sigma_m * sigma_m)), Eigen::Vector3d::Constant(1.0 / (sigma_rad * sigma_rad));
+    weights << Eigen::Vector3d::Constant(1.0 / (sigma_m * sigma_m)),
+        Eigen::Vector3d::Constant(1.0 / (sigma_rad * sigma_rad));
     return Matrix6d(weights.asDiagonal());
   };
   const auto measure = [&](std::size_t from, std::size_t to, double sigma_m, double sigma_rad) {
-    laps.graph.edges.push_back({.from = from, .to = to,
-                                .T_from_to = laps.truth[from].inverse() * laps.truth[to] * Exp(random.Tangent(sigma_m, sigma_rad)),
-                                .information = information(sigma_m, sigma_rad)});
+    laps.graph.edges.push_back(
+        {.from = from,
+         .to = to,
+         .T_from_to = laps.truth[from].inverse() * laps.truth[to] * Exp(random.Tangent(sigma_m, sigma_rad)),
+         .information = information(sigma_m, sigma_rad)});
   };
   for (std::size_t i = 1; i <= 2 * kLap; ++i)
     laps.truth.push_back(laps.truth.back() * FromXyYaw(1.0, 0.0, i % 10 == 0 ? kPi / 2 : 0.0));
@@ -214,7 +222,8 @@ Laps DriveTwoLaps(RandomGraphs& random) {
 
 double WorstError_m(const std::vector<Pose>& poses, const std::vector<Pose>& truth) {
   double worst_m = 0.0;
-  for (std::size_t i = 0; i < poses.size(); ++i) worst_m = std::max(worst_m, (poses[i].translation() - truth[i].translation()).norm());
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    worst_m = std::max(worst_m, (poses[i].translation() - truth[i].translation()).norm());
   return worst_m;
 }
 
@@ -249,7 +258,10 @@ TEST(RobustEdges, CostWhatTheirWeightSumsUpTo) {
   constexpr double kStep = 1e-3;
   OptimizeConfig config{.iterations_max = 0};
   const auto at = [&config](double chi2) {
-    PoseGraph graph{.poses = {Pose::Identity(), FromXyYaw(std::sqrt(chi2), 0.0, 0.0)}, .edges = {{.from = 0, .to = 1}}, .fixed = {}, .planar = true};
+    PoseGraph graph{.poses = {Pose::Identity(), FromXyYaw(std::sqrt(chi2), 0.0, 0.0)},
+                    .edges = {{.from = 0, .to = 1}},
+                    .fixed = {},
+                    .planar = true};
     graph.edges[0].robust = true;
     return Optimize(graph, config);
   };
