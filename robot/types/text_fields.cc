@@ -1,5 +1,6 @@
 #include "robot/types/text_fields.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -34,6 +35,13 @@ std::string Quoted(std::string_view field) {
   return shown + (field.size() > kLongest ? "...'" : "'");
 }
 
+std::string LinesOf(const std::vector<std::size_t>& lines) {
+  constexpr std::size_t kMost = 12;
+  std::string text = lines.size() == 1 ? "line " : "lines ";
+  for (std::size_t i = 0; i < std::min(kMost, lines.size()); ++i) text += (i ? ", " : "") + std::to_string(lines[i]);
+  return lines.size() > kMost ? text + " and more" : text;
+}
+
 std::string_view TextFields::Word() {
   const std::size_t begin = rest_.find_first_not_of(kBlanks);
   if (begin == std::string_view::npos) return rest_ = {};
@@ -56,7 +64,8 @@ double TextFields::Number(std::string_view what, double size_max) {
   if (Parse(field, value) && std::abs(value) <= size_max) return value;
   std::ostringstream limit;
   limit << size_max;
-  throw InputError(where(), std::string(what), "a number between -" + limit.str() + " and " + limit.str(), Quoted(field));
+  throw InputError(where(), std::string(what), "a number between -" + limit.str() + " and " + limit.str(),
+                   Quoted(field));
 }
 
 std::int64_t TextFields::Whole(std::string_view what) {

@@ -1,9 +1,11 @@
 // A line of a text file as fields between blanks, checked as they are read: what every reader of such a file shares.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace merlin {
 
@@ -21,6 +23,9 @@ void ForEachLine(std::string_view text, Each each) {
 
 // A field for an error message: quoted, cut where it is long, without control characters or bytes that are not ASCII.
 std::string Quoted(std::string_view field);
+
+// "line 4", "lines 4, 7, 9", for a warning; the first dozen where there are more.
+std::string LinesOf(const std::vector<std::size_t>& lines);
 
 class TextFields {
  public:

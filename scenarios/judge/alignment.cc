@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace merlin {
 namespace {
 
-constexpr double kDelta_m = 1.0;
-constexpr double kDeltaTolerance_m = 0.1;  // evo's default: a tenth of the delta
+constexpr double kDistanceTolerance = 0.1;  // evo's default: a tenth of the distance
 // Weight of the orientations against the positions' covariance. Far below any real path's spread: it moves the mean
 // square error by less than 1e-8 m2, and decides only what the positions leave open.
 constexpr double kOrientationWeight_m2 = 1e-9;
@@ -28,20 +28,49 @@ std::vector<double> TruePath_m(std::span<const PosePair> pairs) {
   return path_m;
 }
 
-// The instant after i nearest to kDelta_m further along the path, the first of equals; nothing if none is near enough.
-std::optional<std::size_t> Partner(const std::vector<double>& path_m, std::size_t i) {
+// The instant after i nearest to a distance further along the path, the first of equals; nothing if none is near enough.
+std::optional<std::size_t> Partner(const std::vector<double>& path_m, std::size_t i, double distance_m) {
   const auto at_least = [&path_m, i](double length_m) {
     return std::partition_point(path_m.begin() + i + 1, path_m.end(),
                                 [&](double path) { return path - path_m[i] < length_m; });
   };
-  const auto error_m = [&path_m, i](auto j) { return std::abs(*j - path_m[i] - kDelta_m); };
-  auto best = at_least(kDelta_m);
+  const auto error_m = [&](auto j) { return std::abs(*j - path_m[i] - distance_m); };
+  auto best = at_least(distance_m);
   if (best != path_m.begin() + i + 1) {
     const auto below = at_least(*(best - 1) - path_m[i]);  // a standing car repeats a length: take its first instant
     if (best == path_m.end() || error_m(below) <= error_m(best)) best = below;
   }
-  if (best == path_m.end() || error_m(best) > kDeltaTolerance_m) return std::nullopt;
+  if (best == path_m.end() || error_m(best) > kDistanceTolerance * distance_m) return std::nullopt;
   return static_cast<std::size_t>(best - path_m.begin());
+}
+
+struct Umeyama {
+  Eigen::Vector3d mean_world = Eigen::Vector3d::Zero(), mean_map = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  double variance_map_m2 = 0.0;      // eq. 36
+  double covariance_along_m2 = 0.0;  // tr(D S) of eq. 42, from the positions alone
+};
+
+Umeyama Align(std::span<const PosePair> pairs) {
+  const double count = static_cast<double>(pairs.size());
+  Umeyama found;
+  for (const PosePair& pair : pairs) {
+    found.mean_world += pair.T_world_base.translation() / count;
+    found.mean_map += pair.T_map_base.translation() / count;
+  }
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero(), orientations = Eigen::Matrix3d::Zero();
+  for (const PosePair& pair : pairs) {
+    const Eigen::Vector3d map = pair.T_map_base.translation() - found.mean_map;
+    covariance += (pair.T_world_base.translation() - found.mean_world) * map.transpose() / count;  // eq. 38
+    found.variance_map_m2 += map.squaredNorm() / count;
+    orientations += kOrientationWeight_m2 * pair.T_world_base.linear() * pair.T_map_base.linear().transpose() / count;
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance + orientations, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d signs(1.0, 1.0, 1.0);  // eq. 39: a rotation, no reflection
+  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
+  found.rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();  // eq. 40
+  found.covariance_along_m2 = (found.rotation.transpose() * covariance).trace();
+  return found;
 }
 
 }  // namespace
@@ -57,54 +86,68 @@ std::vector<PosePair> PairAtEqualStamps(const Trajectory& truth, const Trajector
   return pairs;
 }
 
-std::optional<Ate> AlignAndAte(std::span<const PosePair> pairs) {
-  if (pairs.empty() || !AllFinite(pairs)) return std::nullopt;
-  const double count = static_cast<double>(pairs.size());
-  Eigen::Vector3d mean_world = Eigen::Vector3d::Zero(), mean_map = Eigen::Vector3d::Zero();
-  for (const PosePair& pair : pairs) {
-    mean_world += pair.T_world_base.translation() / count;
-    mean_map += pair.T_map_base.translation() / count;
+ErrorStatistics StatisticsOf(std::vector<double> errors) {
+  std::ranges::sort(errors);
+  const double count = static_cast<double>(errors.size());
+  const std::size_t half = errors.size() / 2;
+  ErrorStatistics statistics{.min = errors.front(), .max = errors.back()};
+  statistics.median = errors.size() % 2 ? errors[half] : 0.5 * (errors[half - 1] + errors[half]);
+  double squares = 0.0, away = 0.0;
+  for (const double error : errors) {
+    squares += error * error;
+    statistics.mean += error / count;
   }
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // Umeyama eq. 38
-  for (const PosePair& pair : pairs) {
-    covariance +=
-        (pair.T_world_base.translation() - mean_world) * (pair.T_map_base.translation() - mean_map).transpose() / count;
-    covariance += kOrientationWeight_m2 * pair.T_world_base.linear() * pair.T_map_base.linear().transpose() / count;
-  }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs(1.0, 1.0, 1.0);  // eq. 39: a rotation, no reflection
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
+  for (const double error : errors) away += (error - statistics.mean) * (error - statistics.mean);
+  statistics.rmse = std::sqrt(squares / count);
+  statistics.spread = std::sqrt(away / count);
+  return statistics;
+}
 
+std::optional<Ate> AlignAndAte(std::span<const PosePair> pairs, Alignment alignment) {
+  if (pairs.empty() || !AllFinite(pairs)) return std::nullopt;
   Ate ate;
-  ate.T_world_map.linear() = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();  // eq. 40
-  ate.T_world_map.translation() = mean_world - ate.T_world_map.linear() * mean_map;           // eq. 41
-  double sum_m2 = 0.0;
-  for (const PosePair& pair : pairs)
-    sum_m2 += (pair.T_world_base.translation() - ate.T_world_map * pair.T_map_base.translation()).squaredNorm();
-  ate.rmse_m = std::sqrt(sum_m2 / count);
+  if (alignment != Alignment::kNone) {
+    const Umeyama found = Align(pairs);
+    if (alignment == Alignment::kSim3) {
+      if (!(found.variance_map_m2 > 0.0)) return std::nullopt;
+      ate.scale = found.covariance_along_m2 / found.variance_map_m2;  // eq. 42
+    }
+    ate.T_world_map.linear() = found.rotation;
+    ate.T_world_map.translation() = found.mean_world - ate.scale * (found.rotation * found.mean_map);  // eq. 41
+  }
+  std::vector<double> errors_m;
+  for (const PosePair& pair : pairs) {
+    const Eigen::Vector3d p_map = ate.scale * pair.T_map_base.translation();
+    errors_m.push_back((pair.T_world_base.translation() - ate.T_world_map * p_map).norm());
+  }
+  ate.error_m = StatisticsOf(std::move(errors_m));
+  ate.rmse_m = ate.error_m.rmse;
   return ate;
 }
 
-std::optional<Rpe> RpeOverOneMetre(std::span<const PosePair> pairs) {
-  if (!AllFinite(pairs)) return std::nullopt;
+RelativeErrors ErrorsOver(std::span<const PosePair> pairs, double distance_m, double scale) {
+  RelativeErrors errors;
+  if (!AllFinite(pairs)) return errors;
   const std::vector<double> path_m = TruePath_m(pairs);
-  Rpe rpe;
-  double sum_m2 = 0.0, sum_rad2 = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::optional<std::size_t> j = Partner(path_m, i);
+    const std::optional<std::size_t> j = Partner(path_m, i, distance_m);
     if (!j) continue;
     const Pose true_motion = pairs[i].T_world_base.inverse() * pairs[*j].T_world_base;
-    const Pose motion = pairs[i].T_map_base.inverse() * pairs[*j].T_map_base;
+    Pose motion = pairs[i].T_map_base.inverse() * pairs[*j].T_map_base;
+    motion.translation() *= scale;
     const Pose error = true_motion.inverse() * motion;
-    sum_m2 += error.translation().squaredNorm();
-    sum_rad2 += LogSo3(error.linear()).squaredNorm();
-    ++rpe.pairs;
+    errors.translation_m.push_back(error.translation().norm());
+    errors.rotation_rad.push_back(LogSo3(error.linear()).norm());
   }
-  if (rpe.pairs == 0) return std::nullopt;
-  const double count = static_cast<double>(rpe.pairs);
-  rpe.translation_percent = 100.0 * std::sqrt(sum_m2 / count) / kDelta_m;
-  rpe.rotation_deg_per_m = 180.0 / std::numbers::pi * std::sqrt(sum_rad2 / count) / kDelta_m;
-  return rpe;
+  return errors;
+}
+
+std::optional<Rpe> RpeOverOneMetre(std::span<const PosePair> pairs) {
+  const RelativeErrors errors = ErrorsOver(pairs, 1.0);
+  if (errors.translation_m.empty()) return std::nullopt;
+  return Rpe{.translation_percent = 100.0 * StatisticsOf(errors.translation_m).rmse,
+             .rotation_deg_per_m = 180.0 / std::numbers::pi * StatisticsOf(errors.rotation_rad).rmse,
+             .pairs = errors.translation_m.size()};
 }
 
 double PathLength_m(const Trajectory& trajectory) {

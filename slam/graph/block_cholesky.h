@@ -1,8 +1,9 @@
 // Sparse Cholesky factorisation A = L L^T of a symmetric matrix made of small square blocks, one block row a pose.
-// Our own, for two reasons. Speed: blocks of a size known to the compiler make it 2 to 5 times as fast on pose graphs as
-// CHOLMOD, Eigen's SimplicialLLT or Ceres on top of either (one iteration's factorisation and solution, sphere2500: 46 ms;
-// CHOLMOD supernodal 100 with ATLAS and 165 with the reference BLAS, CHOLMOD simplicial 162, Eigen 200; manhattan: 2.2,
-// 11, 4.7, 3.9). And the same bits everywhere: CHOLMOD's depend on the BLAS that a system has and on that one's threads.
+// Our own, for two reasons. Speed: blocks of a size known to the compiler make it 2 to 5 times as fast on pose graphs
+// as CHOLMOD, Eigen's SimplicialLLT or Ceres on top of either (one iteration's factorisation and solution, sphere2500:
+// 46 ms; CHOLMOD supernodal 100 with ATLAS and 165 with the reference BLAS, CHOLMOD simplicial 162, Eigen 200;
+// manhattan: 2.2, 11, 4.7, 3.9). And the same bits everywhere: CHOLMOD's depend on the BLAS that a system has and on
+// that one's threads.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,11 +24,11 @@ struct BlockPattern {
   struct Update {
     int column = 0, index = 0;
   };
-  std::vector<int> place;                     // of each row in the order of elimination
-  std::vector<int> slots;                     // of each pair given: which block under A's diagonal it is
-  std::vector<BlockIndex> blocks;             // of A under the diagonal, by column, then row; no two the same
-  std::vector<std::vector<int>> below;        // rows of each column of L under its diagonal, ascending
-  std::vector<std::vector<Update>> updates;   // of each column of L, in ascending order
+  std::vector<int> place;                    // of each row in the order of elimination
+  std::vector<int> slots;                    // of each pair given: which block under A's diagonal it is
+  std::vector<BlockIndex> blocks;            // of A under the diagonal, by column, then row; no two the same
+  std::vector<std::vector<int>> below;       // rows of each column of L under its diagonal, ascending
+  std::vector<std::vector<Update>> updates;  // of each column of L, in ascending order
 
   int size() const { return static_cast<int>(place.size()); }
   std::size_t factor_blocks() const;  // of L, diagonal included

@@ -20,7 +20,7 @@ namespace merlin {
 namespace {
 
 constexpr double kLargest_m = 1e9, kLargestAngle_rad = 1e6, kLargestInformation = 1e15;
-constexpr double kUnitTolerance = 1e-5;        // files of six digits stay below
+constexpr double kUnitTolerance = 1e-5;  // files of six digits stay below
 constexpr double kShortestQuaternion = 1e-6;
 constexpr double kIndefiniteTolerance = 1e-9;  // of the largest eigenvalue: rounding in a file of nine digits
 constexpr std::array<std::string_view, 5> kTags{"VERTEX_SE2", "EDGE_SE2", "VERTEX_SE3:QUAT", "EDGE_SE3:QUAT", "FIX"};
@@ -36,14 +36,6 @@ struct Ends {
   std::size_t line = 0;
   std::string_view text;
 };
-
-// "3 quaternions ... (lines 4, 7, 9)"
-std::string LinesOf(const std::vector<std::size_t>& lines) {
-  constexpr std::size_t kMost = 12;
-  std::string text = lines.size() == 1 ? "line " : "lines ";
-  for (std::size_t i = 0; i < std::min(kMost, lines.size()); ++i) text += (i ? ", " : "") + std::to_string(lines[i]);
-  return lines.size() > kMost ? text + " and more" : text;
-}
 
 Matrix6d Rescaled(Matrix6d information, double rotation_factor) {
   information.topRightCorner<3, 3>() *= rotation_factor;
@@ -104,7 +96,10 @@ class Reader {
 
   void ReadEdge(TextFields& fields, std::size_t number, std::string_view line) {
     GraphEdge edge;
-    Ends ends{.from = fields.Whole("the first pose's id"), .to = fields.Whole("the second pose's id"), .line = number, .text = line};
+    Ends ends{.from = fields.Whole("the first pose's id"),
+              .to = fields.Whole("the second pose's id"),
+              .line = number,
+              .text = line};
     if (ends.from == ends.to) throw InputError(fields.where(), "an edge from a pose to itself");
     edge.T_from_to = ReadPose(fields, number);
     edge.information = ReadInformation(fields, number);
@@ -152,7 +147,8 @@ class Reader {
     std::ranges::stable_sort(vertices_, {}, &Vertex::id);
     const auto twice = std::ranges::adjacent_find(vertices_, {}, &Vertex::id);
     if (file_.has_poses && twice != vertices_.end())
-      throw InputError(At((twice + 1)->line), fmt::format("pose {} again; it is in line {} already", twice->id, twice->line));
+      throw InputError(At((twice + 1)->line),
+                       fmt::format("pose {} again; it is in line {} already", twice->id, twice->line));
     const auto repeated = std::ranges::unique(vertices_, {}, &Vertex::id);
     vertices_.erase(repeated.begin(), repeated.end());
     for (const Vertex& vertex : vertices_) {
@@ -208,10 +204,11 @@ class Reader {
   }
 
   void Warn() {
-    const auto warn = [this](const std::vector<std::size_t>& lines, const char* one, const char* many, const char* what) {
+    const auto warn = [this](const std::vector<std::size_t>& lines, const char* one, const char* many,
+                             const char* what) {
       if (!lines.empty())
-        file_.warnings.push_back(
-            fmt::format("{}: {} {} {} ({})", name_, lines.size(), lines.size() == 1 ? one : many, what, LinesOf(lines)));
+        file_.warnings.push_back(fmt::format("{}: {} {} {} ({})", name_, lines.size(), lines.size() == 1 ? one : many,
+                                             what, LinesOf(lines)));
     };
     warn(indefinite_, "information matrix is", "information matrices are",
          "not positive semidefinite; negative eigenvalues were set to zero");

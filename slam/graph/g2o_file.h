@@ -15,17 +15,18 @@
 namespace merlin {
 
 struct G2oFile {
-  PoseGraph graph;                    // poses by ascending id; information over rotations [rad], see GraphEdge
-  std::vector<std::int64_t> ids;      // of the poses
-  bool has_poses = false;             // false: the file has no VERTEX, and the poses are chained along the edges
-  std::vector<std::string> warnings;  // one sentence each, with lines
+  PoseGraph graph{};                    // poses by ascending id; information over rotations [rad], see GraphEdge
+  std::vector<std::int64_t> ids{};      // of the poses
+  bool has_poses = false;               // false: the file has no VERTEX, and the poses are chained along the edges
+  std::vector<std::string> warnings{};  // one sentence each, with lines
 };
 
-// Reads the whole text; name: the file's, for the errors. Throws InputError with name and line for a tag that is none of
-// the above, a field that is missing, too much, no number or beyond 1e9 m and 1e15 of information, a quaternion of no
-// length, an edge from a pose to itself or to one that is not there, a second VERTEX of one id, planar and spatial lines
-// mixed, poses that no chain of edges joins, and no edge at all. Warns of, and mends, quaternions off unit length (then
-// normalised), information matrices that are not positive semidefinite (then the nearest that is) and edges said twice.
+// Reads the whole text; name: the file's, for the errors. Throws InputError with name and line for a tag that is none
+// of the above, a field that is missing, too much, no number or beyond 1e9 m and 1e15 of information, a quaternion of
+// no length, an edge from a pose to itself or to one that is not there, a second VERTEX of one id, planar and spatial
+// lines mixed, poses that no chain of edges joins, and no edge at all. Warns of, and mends, quaternions off unit length
+// (then normalised), information matrices that are not positive semidefinite (then the nearest that is) and edges said
+// twice.
 G2oFile ParseG2o(std::string_view text, const std::string& name);
 
 // Numbers so that they read back as the same bits (the information of rotations: once divided and multiplied by 4).

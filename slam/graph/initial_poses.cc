@@ -34,7 +34,8 @@ class LinearNetwork {
       : free_(free), pattern_(pattern), A_(pattern), b_(Eigen::MatrixXd::Zero(D * free.count, 3)) {}
 
   // The values count where the pose is fixed.
-  void Add(const GraphEdge& edge, double weight, const Block& M, const Value& c, const Value& x_from, const Value& x_to) {
+  void Add(const GraphEdge& edge, double weight, const Block& M, const Value& c, const Value& x_from,
+           const Value& x_to) {
     const int from = free_.row[edge.from], to = free_.row[edge.to];
     if (from != kFixed) {
       A_.diagonal[from].diagonal().array() += weight;

@@ -12,8 +12,8 @@ namespace merlin {
 enum class Objective { kA, kB };
 
 // Weights of an edge in A, from the information matrices of its translation and rotation as a g2o file has them:
-// tau = 2 / tr(It^-1), kappa = I33 in the plane; tau = 3 / tr(It^-1), kappa = 3 / (2 tr(Ir^-1)) in the space. Zero for a
-// singular matrix.
+// tau = 2 / tr(It^-1), kappa = I33 in the plane; tau = 3 / tr(It^-1), kappa = 3 / (2 tr(Ir^-1)) in the space. Zero for
+// a singular matrix.
 struct IsotropicWeights {
   double tau = 0.0, kappa = 0.0;
 };

@@ -13,7 +13,10 @@ namespace merlin {
 namespace {
 
 constexpr double kFirstDamping = 1e-12, kDampingFactor = 10.0;  // guesses; of H's diagonal
-constexpr double kDampingMax = 1e12;                           // beyond it a step moves nothing
+constexpr double kDampingMax = 1e12;                            // beyond it a step moves nothing
+constexpr double kConvergedDamping = 1e-6;                      // beyond it a small step says little
+constexpr double kGraduation = 4.0;                             // guess
+constexpr int kIterationsAGrade = 2;                            // guess
 constexpr double kFactor_bytes_max = 4e9;
 
 struct Robust {
@@ -41,8 +44,8 @@ class Problem {
         rotation_(PlanarRotationIn(objective)),
         free_(graph),
         pattern_(MakePattern(free_.count, free_.pairs)),
-        H_(pattern_) {
-    RequireMemory();
+        H_(pattern_),
+        solver_(Allowed(pattern_)) {
     for (const Pose& pose : graph.poses) states_.push_back(Group::Of(pose));
     for (const GraphEdge& edge : graph.edges) {
       measured_.push_back(Group::Of(edge.T_from_to));
@@ -51,31 +54,69 @@ class Problem {
   }
 
   OptimizeResult Solve(const std::atomic<bool>* stop) {
+    stop_ = stop;
     OptimizeResult result;
     result.poses = graph_.poses;
     result.objective = Cost(states_);
-    BlockCholesky<kSize> solver(pattern_);
-    double damping = 0.0;
     if (!std::isfinite(result.objective)) return result;
-    result.converged = free_.count == 0 || graph_.edges.empty();
-    while (!result.converged && result.iterations < config_.iterations_max && !(stop && *stop)) {
-      ++result.iterations;
-      Linearize();
-      if (!Improve(solver, damping, result)) break;
+    const std::vector<State> start = states_;
+    Ending end = Descend(config_.iterations_max);
+    if (WorstRobustChi2(end.states) > phi_) {
+      const Ending other = DescendGradually(start);
+      if (other.cost < end.cost) end = other;
     }
-    for (std::size_t i = 0; i < states_.size(); ++i)
-      if (free_.row[i] != FreePoses::kFixed) result.poses[i] = Group::ToPose(states_[i]);
+    for (std::size_t i = 0; i < end.states.size(); ++i)
+      if (free_.row[i] != FreePoses::kFixed) result.poses[i] = Group::ToPose(end.states[i]);
     for (std::size_t i = 0; i < graph_.edges.size(); ++i)
-      result.edge_weights.push_back(RobustOf(i, Chi2(states_, i)).weight);
+      result.edge_weights.push_back(RobustOf(i, Chi2(end.states, i)).weight);
+    result.objective = end.cost;
+    result.converged = end.converged;
+    result.iterations = iterations_;
     return result;
   }
 
  private:
-  void RequireMemory() const {
-    const double bytes = sizeof(Matrix) * static_cast<double>(pattern_.factor_blocks());
+  struct Ending {
+    std::vector<State> states;
+    double cost = 0.0;
+    bool converged = false;
+  };
+
+  // From states_ on, so many iterations at most.
+  Ending Descend(int iterations) {
+    cost_ = Cost(states_);
+    bool converged = free_.count == 0 || graph_.edges.empty();
+    double damping = 0.0;
+    for (; iterations > 0 && !converged && iterations_ < config_.iterations_max && !(stop_ && *stop_); --iterations) {
+      ++iterations_;
+      Linearize();
+      if (!Improve(damping, converged)) break;
+    }
+    return {.states = states_, .cost = cost_, .converged = converged};
+  }
+
+  // Robust edges bind at first, and are let go by and by (A. Blake and A. Zisserman, "Visual reconstruction", 1987:
+  // graduated non-convexity): odometry may have drifted so far that right loops look wrong at the start.
+  Ending DescendGradually(const std::vector<State>& start) {
+    states_ = start;
+    for (phi_ = WorstRobustChi2(start); phi_ > config_.robust_chi2; phi_ /= kGraduation) Descend(kIterationsAGrade);
+    phi_ = config_.robust_chi2;
+    return Descend(config_.iterations_max);
+  }
+
+  double WorstRobustChi2(const std::vector<State>& states) const {
+    double worst = 0.0;
+    for (std::size_t i = 0; i < graph_.edges.size(); ++i)
+      if (graph_.edges[i].robust) worst = std::max(worst, Chi2(states, i));
+    return worst;
+  }
+
+  static const BlockPattern& Allowed(const BlockPattern& pattern) {
+    const double bytes = sizeof(Matrix) * static_cast<double>(pattern.factor_blocks());
     if (bytes > kFactor_bytes_max)
       throw MachineError("the graph's equations would take " + std::to_string(bytes * 1e-9) +
                          " GB of memory: too many edges join poses that are far apart");
+    return pattern;
   }
 
   double Chi2(const std::vector<State>& states, std::size_t i) const {
@@ -85,7 +126,7 @@ class Problem {
   }
 
   Robust RobustOf(std::size_t i, double chi2) const {
-    return graph_.edges[i].robust ? ScaledCovariance(chi2, config_.robust_chi2) : Robust{.cost = chi2};
+    return graph_.edges[i].robust ? ScaledCovariance(chi2, phi_) : Robust{.cost = chi2};
   }
 
   double Cost(const std::vector<State>& states) const {
@@ -119,27 +160,30 @@ class Problem {
       if (from != FreePoses::kFixed && to != FreePoses::kFixed)
         H_.AddOff(pattern_, pair++, {.row = from, .column = to}, H_from_to);
     }
+    for (Matrix& block : H_.diagonal)  // a coordinate that no edge weighs stays
+      for (double& value : block.diagonal())
+        if (!(value > 0.0)) value = 1.0;
   }
 
   // One step, damped as little as lets it improve the cost. False: there is none.
-  bool Improve(BlockCholesky<kSize>& solver, double& damping, OptimizeResult& result) {
+  bool Improve(double& damping, bool& converged) {
     for (; damping <= kDampingMax; damping = std::max(kFirstDamping, kDampingFactor * damping)) {
-      if (!solver.Factorize(H_, damping)) continue;
+      if (!solver_.Factorize(H_, damping)) continue;
       Eigen::VectorXd step = -g_;
-      solver.Solve(step);
+      solver_.Solve(step);
       const double expected = -g_.dot(step);  // of a whole Gauss-Newton step
       if (!step.allFinite()) continue;
       const std::vector<State> moved = Moved(step);
       const double cost = Cost(moved);
-      const bool small = expected <= config_.improvement_min * result.objective + 1e-12;
-      if (!(cost <= result.objective)) {
+      const bool small = expected <= config_.improvement_min * cost_ + 1e-12;
+      if (!(cost <= cost_)) {
         if (!small) continue;
-        result.converged = true;  // what is left to gain is less than rounding
+        converged = true;  // what is left to gain is less than rounding
         return true;
       }
-      result.converged = small && damping <= kFirstDamping;
+      converged = small && damping <= kConvergedDamping;
       states_ = moved;
-      result.objective = cost;
+      cost_ = cost;
       damping = damping > kFirstDamping ? damping / kDampingFactor : 0.0;
       return true;
     }
@@ -162,7 +206,11 @@ class Problem {
   std::vector<State> states_, measured_;
   std::vector<Matrix> information_;
   BlockMatrix<kSize> H_;
+  BlockCholesky<kSize> solver_;
   Eigen::VectorXd g_;
+  double phi_ = config_.robust_chi2, cost_ = 0.0;
+  int iterations_ = 0;
+  const std::atomic<bool>* stop_ = nullptr;
 };
 
 }  // namespace

@@ -10,20 +10,20 @@
 namespace merlin {
 
 struct GraphEdge {
-  std::size_t from = 0, to = 0;          // indices into PoseGraph::poses, not the same
-  Pose T_from_to = Pose::Identity();     // as measured
-  // Inverse covariance of the error E = T_from_to^-1 (T_from^-1 T_to), over (translation [m], rotation [rad]) in the frame
-  // of `to`; symmetric, positive semidefinite. The rotation is 2 sin(angle / 2) times the axis, as g2o has it: the
-  // rotation vector for small angles. Of planar graphs x, y and yaw count.
+  std::size_t from = 0, to = 0;       // indices into PoseGraph::poses, not the same
+  Pose T_from_to = Pose::Identity();  // as measured
+  // Inverse covariance of the error E = T_from_to^-1 (T_from^-1 T_to), over (translation [m], rotation [rad]) in the
+  // frame of `to`; symmetric, positive semidefinite. The rotation is 2 sin(angle / 2) times the axis, as g2o has it:
+  // the rotation vector for small angles. Of planar graphs x, y and yaw count.
   Matrix6d information = Matrix6d::Identity();
   bool robust = false;  // may be wrong (a loop closure): bends the map less, the less it agrees with it
 };
 
 struct PoseGraph {
-  std::vector<Pose> poses;  // T_map_pose
-  std::vector<GraphEdge> edges;
-  std::vector<std::size_t> fixed;  // poses that stay; empty: the first
-  bool planar = false;             // SE(2): poses and edges are x, y and yaw, the rest is taken as zero
+  std::vector<Pose> poses{};  // T_map_pose
+  std::vector<GraphEdge> edges{};
+  std::vector<std::size_t> fixed{};  // poses that stay; empty: the first
+  bool planar = false;               // SE(2): poses and edges are x, y and yaw, the rest is taken as zero
 };
 
 }  // namespace merlin

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -10,16 +9,14 @@
 #include "perception/project.h"
 #include "slam/map/voxel_map.h"
 #include "slam/register/icp.h"
+#include "tests/shared_data.h"
 
 namespace merlin {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path RgbdFolder() {
-  const char* shared = std::getenv("MERLIN_SHARED_DATA");
-  return (shared ? fs::path(shared) : fs::path(MERLIN_SOURCE_DIR) / "../shared/data") / "rgbd";
-}
+fs::path RgbdFolder() { return SharedData("rgbd"); }
 
 // A Kinect-class camera as a sheet: every fourth pixel each way; so little noise that its sigma is a few millimetres.
 DepthCameraSheet Sheet() {

@@ -17,6 +17,8 @@ void AddRun(CLI::App& app, int& exit_code);
 void AddCamera(CLI::App& app, int& exit_code);
 void AddCalibrate(CLI::App& app, int& exit_code);
 void AddBench(CLI::App& app, int& exit_code);
+void AddOptimize(CLI::App& app, int& exit_code);
+void AddEval(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddDoctor(CLI::App& app, int& exit_code);
 

@@ -26,6 +26,8 @@ int Main(int argc, char** argv) {
   AddRun(app, exit_code);
   AddCamera(app, exit_code);
   AddCalibrate(app, exit_code);
+  AddOptimize(app, exit_code);
+  AddEval(app, exit_code);
   AddList(app, exit_code);
   AddBench(app, exit_code);
   AddDoctor(app, exit_code);

@@ -5,13 +5,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <sstream>
+
+#include "scenarios/judge/tum_file.h"
+#include "tests/shared_data.h"
 
 namespace merlin {
 namespace {
@@ -78,6 +80,38 @@ TEST(Ate, DoesNotScale) {
   EXPECT_NEAR(AlignAndAte(pairs)->rmse_m, 0.1 * std::sqrt(2.0), 1e-12);
 }
 
+TEST(Ate, ScalesWhereAsked) {
+  std::vector<PosePair> pairs;
+  const Pose T_map_other = Exp((Vector6d() << 3, -2, 1, 0.3, -0.2, 2.0).finished());
+  for (const auto& [x_m, y_m] : {std::pair(1, 1), std::pair(-1, 1), std::pair(-1, -1), std::pair(1, -1)})
+    pairs.push_back({At(x_m, y_m, 0), T_map_other * At(0.8 * x_m, 0.8 * y_m, 0)});
+  const Ate ate = *AlignAndAte(pairs, Alignment::kSim3);
+  EXPECT_NEAR(ate.scale, 1.25, 1e-12);
+  EXPECT_NEAR(ate.rmse_m, 0.0, 1e-12);
+  EXPECT_EQ(AlignAndAte(pairs)->scale, 1.0);
+  EXPECT_FALSE(AlignAndAte(std::vector<PosePair>{{At(0, 0, 0), At(1, 1, 1)}, {At(1, 0, 0), At(1, 1, 1)}}, Alignment::kSim3));
+}
+
+TEST(Ate, LeavesTheEstimateWhereItIsWhereAsked) {
+  const std::vector<PosePair> pairs{{At(0, 0, 0), At(3, 4, 0)}, {At(1, 0, 0), At(1, 0, 1)}};
+  const Ate ate = *AlignAndAte(pairs, Alignment::kNone);
+  EXPECT_EQ(ate.T_world_map.matrix(), Pose::Identity().matrix());
+  EXPECT_DOUBLE_EQ(ate.error_m.mean, 3.0);
+  EXPECT_DOUBLE_EQ(ate.error_m.max, 5.0);
+  EXPECT_DOUBLE_EQ(ate.rmse_m, std::sqrt(13.0));
+}
+
+TEST(ErrorStatistics, AreThoseByHand) {
+  const ErrorStatistics odd = StatisticsOf({4.0, 1.0, 1.0});
+  EXPECT_DOUBLE_EQ(odd.mean, 2.0);
+  EXPECT_DOUBLE_EQ(odd.median, 1.0);
+  EXPECT_DOUBLE_EQ(odd.spread, std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(odd.rmse, std::sqrt(6.0));
+  EXPECT_DOUBLE_EQ(StatisticsOf({4.0, 1.0, 1.0, 2.0}).median, 1.5);
+  EXPECT_DOUBLE_EQ(StatisticsOf({0.25}).median, 0.25);
+  EXPECT_EQ(StatisticsOf({0.25}).spread, 0.0);
+}
+
 TEST(Ate, AgreesWithEigenUmeyama) {
   const std::vector<PosePair> pairs = RandomPairs(200, 0.05);
   Eigen::Matrix3Xd p_world(3, 200), p_map(3, 200);
@@ -89,6 +123,11 @@ TEST(Ate, AgreesWithEigenUmeyama) {
   const Ate ate = *AlignAndAte(pairs);
   EXPECT_TRUE(ate.T_world_map.isApprox(expected, 1e-7));  // the orientations' weight turns it by less
   EXPECT_NEAR(ate.rmse_m, std::sqrt((p_world - expected * p_map).squaredNorm() / 200.0), 1e-12);
+
+  const Eigen::Affine3d scaled(Eigen::umeyama(p_map, p_world, true));
+  const Ate sim3 = *AlignAndAte(pairs, Alignment::kSim3);
+  EXPECT_NEAR(sim3.scale, std::cbrt(scaled.linear().determinant()), 1e-9);
+  EXPECT_NEAR(sim3.rmse_m, std::sqrt((p_world - scaled * p_map).squaredNorm() / 200.0), 1e-12);
 }
 
 TEST(Ate, TakesTheTurnFromOrientationsWherePositionsLeaveItOpen) {
@@ -134,6 +173,16 @@ TEST(Rpe, IsTheDriftOfYawPerMetre) {
   ASSERT_TRUE(rpe);
   EXPECT_EQ(rpe->pairs, 73u);
   EXPECT_NEAR(rpe->rotation_deg_per_m, 0.5, 1e-9);
+}
+
+TEST(Rpe, IsZeroForAnEstimateThatOnlyItsScaleIsWrongOf) {
+  std::vector<PosePair> pairs;
+  for (int i = 0; i <= 24; ++i) pairs.push_back({FromXyYaw(0.125 * i, 0, 0.1 * i), FromXyYaw(0.25 * i, 0, 0.1 * i)});
+  const RelativeErrors errors = ErrorsOver(pairs, 0.5, 0.5);
+  ASSERT_EQ(errors.translation_m.size(), 21u);
+  for (const double error_m : errors.translation_m) EXPECT_NEAR(error_m, 0.0, 1e-12);
+  EXPECT_NEAR(ErrorsOver(pairs, 0.5).translation_m[0], 0.5, 1e-12);
+  EXPECT_TRUE(ErrorsOver(pairs, 4.0).translation_m.empty());
 }
 
 TEST(Rpe, DoesNotSeeHowTheWholeLies) {
@@ -189,41 +238,21 @@ TEST(PathLength, SumsTheSteps) {
   EXPECT_EQ(PathLength_m({{Time(0), At(0, 0, 0)}, {Time(1), At(3, 4, 0)}, {Time(2), At(0, 0, 0)}}), 10.0);
 }
 
-Trajectory ReadTum(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  Trajectory trajectory;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with('#')) continue;
-    std::istringstream fields(line);
-    double stamp_s = 0.0, x = 0.0, y = 0.0, z = 0.0, qx = 0.0, qy = 0.0, qz = 0.0, qw = 0.0;
-    if (!(fields >> stamp_s >> x >> y >> z >> qx >> qy >> qz >> qw)) continue;
-    trajectory.push_back(
-        {FromSeconds(stamp_s), Eigen::Translation3d(x, y, z) * Eigen::Quaterniond(qw, qx, qy, qz).normalized()});
-  }
-  return trajectory;
-}
-
-// Each estimate with the true pose nearest in time, at most 20 ms away.
-std::vector<PosePair> PairNearest(const Trajectory& truth, const Trajectory& estimate) {
-  std::vector<PosePair> pairs;
-  for (const StampedPose& pose : estimate) {
-    const auto gap = [&pose](const StampedPose& candidate) { return std::chrono::abs(candidate.stamp - pose.stamp); };
-    const auto nearest =
-        std::min_element(truth.begin(), truth.end(), [&gap](const auto& a, const auto& b) { return gap(a) < gap(b); });
-    if (gap(*nearest) <= std::chrono::milliseconds(20)) pairs.push_back({nearest->T, pose.T});
-  }
-  return pairs;
+std::vector<PosePair> RealPairs() {
+  const auto read = [](const std::string& name) {
+    std::stringstream text;
+    text << std::ifstream(SharedData("trajectories") / name).rdbuf();
+    return ParseTum(text.str(), name).trajectory;
+  };
+  return PairAtNearestStamps(read("freiburg1_xyz-groundtruth.txt"), read("freiburg1_xyz-rgbdslam.txt"),
+                             std::chrono::milliseconds(20));
 }
 
 // The TUM RGB-D benchmark's freiburg1_xyz and an RGB-D SLAM estimate of it; expected figures by evo 1.38.1.
 TEST(Ate, AgreesWithEvoOnARealTrajectory) {
-  const char* const variable = std::getenv("MERLIN_SHARED_DATA");
-  const std::filesystem::path data =
-      variable ? std::filesystem::path(variable) : std::filesystem::path(MERLIN_SOURCE_DIR) / "../shared/data";
-  const std::filesystem::path folder = data / "trajectories";
+  const std::filesystem::path folder = SharedData("trajectories");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real trajectories: " << folder << " does not exist";
-  const std::vector<PosePair> pairs =
-      PairNearest(ReadTum(folder / "freiburg1_xyz-groundtruth.txt"), ReadTum(folder / "freiburg1_xyz-rgbdslam.txt"));
+  const std::vector<PosePair> pairs = RealPairs();
   ASSERT_EQ(pairs.size(), 786u);
   EXPECT_NEAR(AlignAndAte(pairs)->rmse_m, 0.013473468, 1e-9);
   const Rpe rpe = *RpeOverOneMetre(pairs);
