@@ -27,6 +27,7 @@ int Main(int argc, char** argv) {
   AddCamera(app, exit_code);
   AddCalibrate(app, exit_code);
   AddList(app, exit_code);
+  AddRegister(app, exit_code);
   AddBench(app, exit_code);
   AddDoctor(app, exit_code);
   try {
