@@ -2,25 +2,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <unordered_map>
 
 namespace merlin {
 namespace {
-
-std::size_t Hash(const std::array<std::int32_t, 3>& cell) {
-  // Multiply by large odd numbers and mix (Teschner et al. 2003, with a final avalanche step).
-  std::uint64_t h = static_cast<std::uint32_t>(cell[0]) * 0x9E3779B185EBCA87ull ^
-                    static_cast<std::uint32_t>(cell[1]) * 0xC2B2AE3D27D4EB4Full ^
-                    static_cast<std::uint32_t>(cell[2]) * 0x165667B19E3779F9ull;
-  h ^= h >> 29;
-  h *= 0xBF58476D1CE4E5B9ull;
-  return static_cast<std::size_t>(h ^ (h >> 32));
-}
-
-// Points farther out, or not finite, have no cell: they are left out.
-constexpr float kReach_m = 1e6f;
-bool InReach(const Eigen::Vector3f& point) { return (point.array().abs() < kReach_m).all(); }
 
 template <class Function>
 void ForNeighbours(const std::array<std::int32_t, 3>& cell, Function function) {
@@ -40,36 +27,25 @@ Eigen::Vector3d VoxelMap::Centre(const Cell& cell) const {
   return (Eigen::Vector3d(cell[0], cell[1], cell[2]).array() + 0.5) * config_.voxel_m;
 }
 
-std::int32_t VoxelMap::Find(const Cell& cell) const {
-  if (slots_.empty()) return -1;
-  for (std::size_t slot = Hash(cell) & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1)) {
-    const std::int32_t index = slots_[slot];
-    if (index < 0 || voxels_[index].cell == cell) return index;
-  }
-}
-
 Voxel& VoxelMap::FindOrAdd(const Cell& cell) {
   if (const std::int32_t index = Find(cell); index >= 0) return voxels_[index];
   voxels_.emplace_back().cell = cell;
-  if (2 * voxels_.size() > slots_.size()) {
+  if (2 * voxels_.size() > slots_.size())
     Rehash(std::max<std::size_t>(1024, 4 * voxels_.size()));
-  } else {
-    std::size_t slot = Hash(cell) & (slots_.size() - 1);
-    while (slots_[slot] >= 0) slot = (slot + 1) & (slots_.size() - 1);
-    slots_[slot] = static_cast<std::int32_t>(voxels_.size()) - 1;
-  }
+  else
+    Enter(static_cast<std::int32_t>(voxels_.size()) - 1);
   return voxels_.back();
 }
 
+void VoxelMap::Enter(std::int32_t index) {
+  std::size_t slot = HashOf(voxels_[index].cell) & (slots_.size() - 1);
+  while (slots_[slot].index >= 0) slot = (slot + 1) & (slots_.size() - 1);
+  slots_[slot] = {voxels_[index].cell, index};
+}
+
 void VoxelMap::Rehash(std::size_t slots) {
-  std::size_t size = 1;
-  while (size < slots) size *= 2;
-  slots_.assign(size, -1);
-  for (std::size_t i = 0; i < voxels_.size(); ++i) {
-    std::size_t slot = Hash(voxels_[i].cell) & (size - 1);
-    while (slots_[slot] >= 0) slot = (slot + 1) & (size - 1);
-    slots_[slot] = static_cast<std::int32_t>(i);
-  }
+  slots_.assign(std::bit_ceil(slots), {});
+  for (std::size_t i = 0; i < voxels_.size(); ++i) Enter(static_cast<std::int32_t>(i));
 }
 
 void VoxelMap::Insert(std::span<const Point> points_base, const Pose& T_map_base, double path_m) {
@@ -136,9 +112,7 @@ const Voxel* VoxelMap::Nearest(const Eigen::Vector3f& point_map) const {
   if (!InReach(point_map)) return nullptr;
   const Voxel* nearest = nullptr;
   float best = HUGE_VALF;
-  ForNeighbours(CellOf(point_map.cast<double>()), [&](const Cell& cell) {
-    const std::int32_t index = Find(cell);
-    if (index < 0 || !voxels_[index].has_normal()) return;
+  ForSurfacesAround(CellOf(point_map.cast<double>()), [&](std::int32_t index) {
     const float distance = (voxels_[index].mean - point_map).squaredNorm();
     if (distance < best) {
       best = distance;
@@ -150,14 +124,14 @@ const Voxel* VoxelMap::Nearest(const Eigen::Vector3f& point_map) const {
 
 std::vector<Point> Downsample(std::span<const Point> points, double voxel_m) {
   struct CellHash {
-    std::size_t operator()(const std::array<std::int32_t, 3>& cell) const { return Hash(cell); }
+    std::size_t operator()(const std::array<std::int32_t, 3>& cell) const { return VoxelMap::HashOf(cell); }
   };
   std::unordered_map<std::array<std::int32_t, 3>, std::size_t, CellHash> index_of;
   index_of.reserve(points.size());
   std::vector<Point> out;
   std::vector<int> counts;
   for (const Point& point : points) {
-    if (!InReach(point.position)) continue;
+    if (!VoxelMap::InReach(point.position)) continue;
     const Eigen::Vector3f cell = (point.position / static_cast<float>(voxel_m)).array().floor();
     const auto [it, added] = index_of.try_emplace({static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
                                                    static_cast<std::int32_t>(cell.z())},

@@ -51,22 +51,59 @@ class VoxelMap {
   void ForgetBefore(double path_m);
 
   // The voxel with a normal whose mean is nearest, among the point's own and the 26 around it; null: none.
+  // For many points near each other: slam/map/nearest_search.h.
   const Voxel* Nearest(const Eigen::Vector3f& point_map) const;
   const std::vector<Voxel>& voxels() const { return voxels_; }
   const VoxelMapConfig& config() const { return config_; }
 
+  // Points farther out, or not finite, have no cell: they are left out.
+  static bool InReach(const Eigen::Vector3f& point) { return (point.array().abs() < 1e6f).all(); }
+
+  using Cell = std::array<std::int32_t, 3>;  // a table of cells is made of these three
+  // Multiplies by large odd numbers and mixes (Teschner et al. 2003, with a final avalanche step).
+  static std::size_t HashOf(const Cell& cell) {
+    std::uint64_t h = static_cast<std::uint32_t>(cell[0]) * 0x9E3779B185EBCA87ull ^
+                      static_cast<std::uint32_t>(cell[1]) * 0xC2B2AE3D27D4EB4Full ^
+                      static_cast<std::uint32_t>(cell[2]) * 0x165667B19E3779F9ull;
+    h ^= h >> 29;
+    h *= 0xBF58476D1CE4E5B9ull;
+    return static_cast<std::size_t>(h ^ (h >> 32));
+  }
+  // As ==, which compilers turn into a call of memcmp.
+  static bool Same(const Cell& a, const Cell& b) { return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0; }
+
  private:
-  using Cell = std::array<std::int32_t, 3>;
+  friend class NearestSearch;
+  struct Slot {
+    Cell cell{};
+    std::int32_t index = -1;  // into voxels_; -1: free
+  };
+  // The indices of the voxels with a normal among the cell and the 26 around it, in one order always.
+  template <class Function>
+  void ForSurfacesAround(const Cell& cell, Function function) const {
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz) {
+          const std::int32_t index = Find({cell[0] + dx, cell[1] + dy, cell[2] + dz});
+          if (index >= 0 && voxels_[static_cast<std::size_t>(index)].has_normal()) function(index);
+        }
+  }
   Cell CellOf(const Eigen::Vector3d& point_map) const;
   Eigen::Vector3d Centre(const Cell& cell) const;
-  std::int32_t Find(const Cell& cell) const;  // -1: empty
+  // -1: empty.
+  std::int32_t Find(const Cell& cell) const {
+    if (slots_.empty()) return -1;
+    for (std::size_t slot = HashOf(cell) & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1))
+      if (slots_[slot].index < 0 || Same(slots_[slot].cell, cell)) return slots_[slot].index;
+  }
   Voxel& FindOrAdd(const Cell& cell);
   void Rehash(std::size_t slots);
+  void Enter(std::int32_t index);
   void UpdateSurface(Voxel& voxel) const;
 
   VoxelMapConfig config_;
   std::vector<Voxel> voxels_;               // in order of creation: the same whatever the table's size
-  std::vector<std::int32_t> slots_;         // open addressing, linear probing; index into voxels_ or -1
+  std::vector<Slot> slots_;                 // open addressing, linear probing; a power of two
 };
 
 // One point a voxel of that edge: mean position, of the first point's sigma and colour. In order of first appearance.

@@ -2,6 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <vector>
+
+#include "slam/map/nearest_search.h"
 
 namespace merlin {
 namespace {
@@ -11,16 +14,37 @@ struct NormalEquations {
   Vector6d b = Vector6d::Zero();
   int pairs = 0, inliers = 0;
   double squares_m2 = 0.0;
+  // Moments of the points, as weighted.
+  double weight = 0.0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
 };
 
-NormalEquations Linearize(std::span<const Point> points_base, const Eigen::Vector3f& origin_base, const VoxelMap& map,
-                          const Pose& T_map_base, const IcpConfig& config) {
+// What of a point is the same in every iteration.
+struct Source {
+  Eigen::Vector3f position;
+  float sigma_m;
+  Eigen::Vector3d p_base, ray;
+};
+
+std::vector<Source> Prepare(std::span<const Point> points_base, const Eigen::Vector3f& origin_base) {
+  std::vector<Source> sources;
+  sources.reserve(points_base.size());
+  for (const Point& point : points_base) {
+    const Eigen::Vector3d p_base = point.position.cast<double>();
+    sources.push_back({point.position, point.sigma_m, p_base, (p_base - origin_base.cast<double>()).normalized()});
+  }
+  return sources;
+}
+
+NormalEquations Linearize(std::span<const Source> points, NearestSearch& search, const Pose& T_map_base,
+                          const IcpConfig& config) {
   NormalEquations equations;
   const Eigen::Isometry3f T = T_map_base.cast<float>();
   const double kernel_m2 = config.kernel_m * config.kernel_m;
-  for (const Point& point : points_base) {
+  for (const Source& point : points) {
     const Eigen::Vector3f p_map = T * point.position;
-    const Voxel* voxel = map.Nearest(p_map);
+    const Voxel* voxel = search.Nearest(p_map);
     if (voxel == nullptr) continue;
     ++equations.pairs;
     const double residual_m = voxel->normal.dot(p_map - voxel->mean);
@@ -31,19 +55,32 @@ NormalEquations Linearize(std::span<const Point> points_base, const Eigen::Vecto
     }
     // Range noise acts along the ray: seen at a grazing angle little of it is across the surface.
     const Eigen::Vector3d n_base = (T.linear().transpose() * voxel->normal).cast<double>();
-    const Eigen::Vector3d p_base = point.position.cast<double>();
-    const double across = n_base.dot((p_base - origin_base.cast<double>()).normalized());
+    const double across = n_base.dot(point.ray);
     const double variance_m2 = std::pow(point.sigma_m * across, 2) + config.map_sigma_m * config.map_sigma_m;
     const double robust = std::pow(kernel_m2 / (kernel_m2 + squared_m2), 2);
     const double weight = config.independent_share * robust / variance_m2;
     // d(T Exp(x) p) = R (x_t + x_r x p)
     Vector6d jacobian;
-    jacobian << n_base, p_base.cross(n_base);
-    equations.H.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+    jacobian << n_base, point.p_base.cross(n_base);
+    for (int i = 0; i < 6; ++i) equations.H.col(i) += (weight * jacobian(i)) * jacobian;
     equations.b += weight * residual_m * jacobian;
+    equations.weight += weight;
+    equations.sum += weight * point.p_base;
+    equations.squares += (weight * point.p_base) * point.p_base.transpose();
   }
   equations.H = equations.H.selfadjointView<Eigen::Lower>();
   return equations;
+}
+
+// Sum of weight * [I, -Hat(p)]' [I, -Hat(p)].
+PairSums Sums(const NormalEquations& equations) {
+  PairSums sums{.information = equations.H};
+  const Eigen::Matrix3d& squares = equations.squares;
+  sums.whole.topLeftCorner<3, 3>().diagonal().setConstant(equations.weight);
+  sums.whole.topRightCorner<3, 3>() = -Hat(equations.sum);
+  sums.whole.bottomLeftCorner<3, 3>() = Hat(equations.sum);
+  sums.whole.bottomRightCorner<3, 3>() = squares.trace() * Eigen::Matrix3d::Identity() - squares;
+  return sums;
 }
 
 }  // namespace
@@ -52,14 +89,19 @@ RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3
                         const PosePrior& prior, const IcpConfig& config) {
   RegisterResult result;
   result.T_map_base = prior.T_map_base;
+  result.undetermined = FindUndetermined(Shares{});  // so far nothing is held
+  const std::vector<Source> points = Prepare(points_base, origin_base);
+  NearestSearch search(map, points.size());
+  PairSums geometry;
   bool small_step = false;
   while (result.iterations < config.iterations_max && !small_step) {
     ++result.iterations;
-    NormalEquations equations = Linearize(points_base, origin_base, map, result.T_map_base, config);
+    NormalEquations equations = Linearize(points, search, result.T_map_base, config);
     result.inliers = equations.inliers;
     if (equations.inliers < config.inliers_min) return result;
     result.inlier_share = static_cast<double>(equations.inliers) / equations.pairs;
     result.rms_m = std::sqrt(equations.squares_m2 / equations.inliers);
+    geometry = Sums(equations);
     equations.H += prior.information;
     equations.b += prior.information * Log(prior.T_map_base.inverse() * result.T_map_base);
     const Eigen::LDLT<Matrix6d> solver(equations.H);
@@ -69,6 +111,7 @@ RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3
     result.covariance = solver.solve(Matrix6d::Identity());
     small_step = step.norm() < config.step_converged;
   }
+  result.undetermined = FindUndetermined(SplitIntoShares(geometry));
   result.converged = small_step && result.inlier_share >= config.inlier_share_min;
   return result;
 }

@@ -8,6 +8,7 @@
 
 #include "perception/project.h"
 #include "slam/map/voxel_map.h"
+#include "slam/register/align.h"
 #include "slam/register/icp.h"
 #include "tests/shared_data.h"
 
@@ -29,33 +30,53 @@ DepthCameraSheet Sheet() {
   return sheet;
 }
 
+constexpr int kWidth = 640, kHeight = 480;
+
 // depth/N.pgm: 16 bit big-endian, 1/1000 m along the optical axis.
-DepthFrame ReadFrame(int number) {
+std::vector<double> ReadDepth_m(int number) {
   std::ifstream in(RgbdFolder() / "depth" / (std::to_string(number) + ".pgm"), std::ios::binary);
   std::string magic;
   int width = 0, height = 0, max = 0;
   in >> magic >> width >> height >> max;
   in.get();
-  std::vector<unsigned char> bytes(2 * static_cast<std::size_t>(width) * height);
+  std::vector<unsigned char> bytes(2 * kWidth * kHeight);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  EXPECT_TRUE(in.good() && width == 640 && height == 480) << number;
+  EXPECT_TRUE(in.good() && width == kWidth && height == kHeight) << number;
+  std::vector<double> depth_m(bytes.size() / 2);
+  for (std::size_t i = 0; i < depth_m.size(); ++i) depth_m[i] = (bytes[2 * i] * 256 + bytes[2 * i + 1]) / 1000.0;
+  return depth_m;
+}
 
+bool IsValid(double depth_m) { return depth_m > 0.3 && depth_m < 6.0; }
+
+DepthFrame ReadFrame(int number) {
+  const std::vector<double> depths_m = ReadDepth_m(number);
   const CameraModel camera = Sheet().camera;
   DepthFrame frame;
   frame.width = camera.width;
   frame.height = camera.height;
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
-      const std::size_t i = 2 * (static_cast<std::size_t>(4 * v) * width + 4 * u);
-      const double depth_m = (bytes[i] * 256 + bytes[i + 1]) / 1000.0;
-      const bool valid = depth_m > 0.3 && depth_m < 6.0;
+      const double depth_m = depths_m[static_cast<std::size_t>(4 * v) * kWidth + static_cast<std::size_t>(4 * u)];
       frame.range_m.push_back(static_cast<float>(depth_m / camera.Ray(u, v).z()));
       frame.amplitude.push_back(200'000.0f);
-      frame.flags.push_back(valid ? 0 : kInvalid);
+      frame.flags.push_back(IsValid(depth_m) ? 0 : kInvalid);
     }
   }
   frame.intensity.assign(frame.size(), 128);
   return frame;
+}
+
+// Every pixel, as a free cloud in the optical frame.
+Cloud ReadFreeCloud(int number) {
+  const std::vector<double> depths_m = ReadDepth_m(number);
+  Cloud cloud;
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u) {
+      const double z = depths_m[static_cast<std::size_t>(v) * kWidth + static_cast<std::size_t>(u)];
+      if (IsValid(z)) cloud.positions.push_back({(u - 325.5) / 518.0 * z, (v - 253.5) / 519.0 * z, z});
+    }
+  return cloud;
 }
 
 Observation Perceive(int number) {
@@ -77,6 +98,33 @@ std::vector<Pose> ReadPoses() {
   return poses;
 }
 
+Vector6d FifteenCentimetresAndFiveDegrees() {
+  Vector6d away;
+  away.head<3>() = 0.15 * Eigen::Vector3d(1.0, -1.0, 1.0).normalized();
+  away.tail<3>() = 5.0 * std::numbers::pi / 180.0 * Eigen::Vector3d(1.0, 1.0, -1.0).normalized();
+  return away;
+}
+
+TEST(RealFrames, AlignNeighboursAsFreeCloudsFromFifteenCentimetresAndFiveDegreesAway) {
+  if (!fs::exists(RgbdFolder() / "pose.txt")) GTEST_SKIP() << "no real frames at " << RgbdFolder();
+  const std::vector<Pose> poses = ReadPoses();
+  ASSERT_EQ(poses.size(), 5u);
+  for (std::size_t target = 2; target <= 4; ++target) {
+    const Cloud a = Thin(ReadFreeCloud(static_cast<int>(target)), 0.05);
+    const Cloud b = Thin(ReadFreeCloud(static_cast<int>(target) + 1), 0.05);
+    const Pose T_a_b = poses[target - 1].inverse() * poses[target];
+    const AlignResult result = Align(b, a, T_a_b * Exp(FifteenCentimetresAndFiveDegrees()), {});
+    const Pose error = T_a_b.inverse() * result.T_target_source;
+    const double error_mm = 1e3 * error.translation().norm();
+    const double error_deg = LogSo3(error.linear()).norm() * 180.0 / std::numbers::pi;
+    std::printf("pair %zu-%zu: %.1f mm, %.2f deg, %d iterations\n", target, target + 1, error_mm, error_deg, result.iterations);
+    EXPECT_TRUE(result.converged()) << target;
+    EXPECT_EQ(result.method, AlignMethod::kGicp) << target;
+    EXPECT_LT(error_mm, 40.0) << target;  // the given poses are another system's estimate
+    EXPECT_LT(error_deg, 0.7) << target;
+  }
+}
+
 TEST(RealFrames, RegisterNeighboursFromFifteenCentimetresAndFiveDegreesAway) {
   if (!fs::exists(RgbdFolder() / "pose.txt")) GTEST_SKIP() << "no real frames at " << RgbdFolder();
   const std::vector<Pose> poses = ReadPoses();
@@ -84,9 +132,7 @@ TEST(RealFrames, RegisterNeighboursFromFifteenCentimetresAndFiveDegreesAway) {
   for (int target = 2; target <= 4; ++target) {
     const Observation a = Perceive(target), b = Perceive(target + 1);
     const Pose T_a_b = poses[target - 1].inverse() * poses[target];
-    Vector6d away = Vector6d::Zero();
-    away.head<3>() = 0.15 * Eigen::Vector3d(1.0, -1.0, 1.0).normalized();
-    away.tail<3>() = 5.0 * std::numbers::pi / 180.0 * Eigen::Vector3d(1.0, 1.0, -1.0).normalized();
+    const Vector6d away = FifteenCentimetresAndFiveDegrees();
 
     // Coarse to fine: a wide reach first, then sharp.
     RegisterResult result{.T_map_base = T_a_b * Exp(away)};

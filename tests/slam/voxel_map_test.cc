@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "slam/map/nearest_search.h"
+
 namespace merlin {
 namespace {
 
@@ -36,6 +38,20 @@ TEST(VoxelMap, FindsTheNearestSurfaceThatBruteForceFinds) {
     ++found;
   }
   EXPECT_GT(found, 400);
+}
+
+TEST(NearestSearch, FindsTheMapsNearest) {
+  VoxelMap map({.voxel_m = 0.1, .flatness_max = 1.0, .plane_points_min = 3});
+  map.Insert(Scatter(3000, 1.0, 1), Pose::Identity(), 0.0);
+  for (const std::size_t expected_points : {0u, 100000u}) {
+    NearestSearch search(map, expected_points);
+    for (int round = 0; round < 2; ++round)
+      for (const Point& query : Scatter(2000, 1.5, 2)) ASSERT_EQ(search.Nearest(query.position), map.Nearest(query.position));
+    EXPECT_EQ(search.Nearest({std::nanf(""), 0.0f, 0.0f}), nullptr);
+    EXPECT_EQ(search.Nearest({1e30f, 0.0f, 0.0f}), nullptr);
+  }
+  const VoxelMap empty({});
+  EXPECT_EQ(NearestSearch(empty, 10).Nearest({0.0f, 0.0f, 0.0f}), nullptr);
 }
 
 TEST(VoxelMap, GivesAPlaneItsNormalAcrossTheOrigin) {

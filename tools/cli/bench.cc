@@ -9,6 +9,7 @@
 #if MERLIN_TWIN
 #include "tools/camera/bench.h"
 #include "tools/physics/bench.h"
+#include "tools/slam/bench.h"
 #endif
 
 namespace merlin::cli {
@@ -31,6 +32,7 @@ int Print(const Result& bench, bool json) {
 
 int Bench(const Arguments& arguments) {
   if (arguments.what == "physics") return Print(BenchPhysics(interrupted), arguments.json);
+  if (arguments.what == "slam") return Print(BenchSlam(interrupted), arguments.json);
   return Print(BenchCamera(arguments.threads, interrupted), arguments.json);
 }
 
@@ -45,9 +47,9 @@ int Bench(const Arguments&) { throw MachineError("this build has no twin (MERLIN
 void AddBench(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* bench = app.add_subcommand("bench", "how long things take on this machine");
-  bench->add_option("what", arguments->what, "camera: frames and rays in corridor_26x21; physics: steps in room_7x10")
+  bench->add_option("what", arguments->what, "camera: frames and rays in corridor_26x21; physics: steps in room_7x10; slam: filter to pose")
       ->required()
-      ->check(CLI::IsMember({"camera", "physics"}));
+      ->check(CLI::IsMember({"camera", "physics", "slam"}));
   bench->add_option("--threads", arguments->threads, "of the cameras, measured beside one thread; default 2")
       ->check(CLI::Range(1, 256));
   bench->add_flag("--json", arguments->json, "for machines");

@@ -16,6 +16,7 @@ extern std::atomic<bool> interrupted;
 void AddRun(CLI::App& app, int& exit_code);
 void AddCamera(CLI::App& app, int& exit_code);
 void AddCalibrate(CLI::App& app, int& exit_code);
+void AddRegister(CLI::App& app, int& exit_code);
 void AddBench(CLI::App& app, int& exit_code);
 void AddOptimize(CLI::App& app, int& exit_code);
 void AddEval(CLI::App& app, int& exit_code);

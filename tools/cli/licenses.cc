@@ -8,6 +8,7 @@
 
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
+#include <nanoflann.hpp>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/version.hpp>
 
@@ -47,6 +48,8 @@ std::vector<LinkedWork> LinkedWorks() {
   std::vector<LinkedWork> works = TwinWorks();
   const std::vector<LinkedWork> always{
       {"Eigen", Dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION), "MPL-2.0", "headers"},
+      {"nanoflann", Dotted(NANOFLANN_VERSION >> 8, NANOFLANN_VERSION >> 4 & 15, NANOFLANN_VERSION & 15), "BSD-2-Clause",
+       "headers"},
       {"OpenCV (core, imgproc, imgcodecs, videoio)", CV_VERSION, "Apache-2.0", "shared libraries"},
       {"FFmpeg", "", "GPL-2.0-or-later", "shared libraries, through OpenCV's videoio; as Debian builds it"},
       {"GStreamer", "", "LGPL-2.1-or-later", "shared libraries, through OpenCV's videoio"},

@@ -29,6 +29,7 @@ int Main(int argc, char** argv) {
   AddOptimize(app, exit_code);
   AddEval(app, exit_code);
   AddList(app, exit_code);
+  AddRegister(app, exit_code);
   AddBench(app, exit_code);
   AddDoctor(app, exit_code);
   try {

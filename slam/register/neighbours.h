@@ -1,0 +1,38 @@
+// Nearest neighbours in a cloud, by nanoflann's k-d tree. What it finds is a matter of geometry alone: of points
+// equally far the one with the lowest index is nearest.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace merlin {
+
+struct Neighbour {
+  double squared_m2 = 0.0;
+  std::uint32_t index = 0;
+  auto operator<=>(const Neighbour&) const = default;
+};
+
+class Neighbours {
+ public:
+  // Keeps a reference: the positions must outlive it, and be finite.
+  explicit Neighbours(std::span<const Eigen::Vector3d> positions);
+  ~Neighbours();
+  Neighbours(const Neighbours&) = delete;
+  Neighbours& operator=(const Neighbours&) = delete;
+
+  // None farther than reach_m.
+  std::optional<Neighbour> Nearest(const Eigen::Vector3d& query, double reach_m) const;
+  // The nearest ones, as many as fit into `found`, near to far; how many there are.
+  std::size_t Nearest(const Eigen::Vector3d& query, std::span<Neighbour> found) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace merlin

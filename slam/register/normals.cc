@@ -1,0 +1,42 @@
+#include "slam/register/normals.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace merlin {
+namespace {
+
+// Variances. Of the neighbours of a point on a curve the one across is small; a full volume is not flat.
+constexpr double kLineShare = 1e-6, kWideShare = 0.15, kFlatShare = 0.2;
+
+Eigen::Matrix3d Spread(const Cloud& cloud, const Eigen::Vector3d& at, std::span<const Neighbour> near) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Neighbour& neighbour : near) {
+    const Eigen::Vector3d d = cloud.positions[neighbour.index] - at;
+    sum += d;
+    squares += d * d.transpose();
+  }
+  const double n = static_cast<double>(near.size());
+  return squares / n - sum / n * (sum / n).transpose();
+}
+
+}  // namespace
+
+Surfaces FindSurfaces(const Cloud& cloud, const Neighbours& neighbours, int count) {
+  Surfaces surfaces;
+  surfaces.normals.reserve(cloud.size());
+  std::vector<Neighbour> found(static_cast<std::size_t>(count));
+  std::size_t flat = 0;
+  for (const Eigen::Vector3d& position : cloud.positions) {
+    const std::size_t n = neighbours.Nearest(position, found);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(Spread(cloud, position, std::span(found).first(n)));
+    const Eigen::Vector3d v = solver.eigenvalues();
+    const bool line = !(v(2) > 0.0 && v(1) > kLineShare * v(2));
+    surfaces.normals.push_back(line ? Eigen::Vector3d(0.0, 0.0, 0.0) : Eigen::Vector3d(solver.eigenvectors().col(0)));
+    if (!line && v(1) >= kWideShare * v(2) && v(0) <= kFlatShare * v(1)) ++flat;
+  }
+  surfaces.share = cloud.size() > 0 ? static_cast<double>(flat) / static_cast<double>(cloud.size()) : 0.0;
+  return surfaces;
+}
+
+}  // namespace merlin

@@ -1,0 +1,139 @@
+// `merlin register` as its users meet it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+
+#include "robot/types/se3.h"
+#include "tests/scenarios/judge/temporary_folder.h"
+
+namespace merlin {
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string said;  // both streams
+};
+
+Outcome Register(const std::string& arguments, const TemporaryFolder& folder) {
+  const std::string command =
+      "cd '" + folder.path().string() + "' && '" MERLIN_BINARY "' register " + arguments + " 2>&1";
+  Outcome outcome;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 4096> buffer;
+  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) outcome.said.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return outcome;
+}
+
+// A room's corner, moved.
+void WriteCorner(const std::filesystem::path& file, const Pose& T, bool only_floor = false) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> at(0.0, 2.0);
+  std::ofstream out(file);
+  out.precision(12);
+  for (int i = 0; i < 1500; ++i) {
+    Eigen::Vector3d p(at(random), at(random), at(random));
+    p(only_floor ? 2 : i % 3) = 0.0;
+    p = T * p;
+    out << p.x() << "," << p.y() << "," << p.z() << "\n";
+  }
+}
+
+TEST(RegisterCli, PrintsThePoseForMachines) {
+  const TemporaryFolder folder;
+  const Pose T = FromXyYaw(0.05, -0.03, 0.04);
+  WriteCorner(folder.path() / "s.csv", Pose::Identity());
+  WriteCorner(folder.path() / "t.csv", T);
+  for (const char* options :
+       {"", "--method point --max-distance 0.5", "--method plane", "--guess 0.04,-0.03,0,0,0,0.05", "--voxel 0.02",
+        "--guess 1,0,0,0.01,0,1,0,0,0,0,1,0,0,0,0,1"}) {
+    const Outcome outcome = Register(std::string("s.csv t.csv --json ") + options, folder);
+    ASSERT_EQ(outcome.code, 0) << outcome.said;
+    const auto json = nlohmann::json::parse(outcome.said);
+    ASSERT_EQ(json["T_target_source"].size(), 16u);
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        EXPECT_NEAR(json["T_target_source"][static_cast<std::size_t>(4 * i + j)].get<double>(), T.matrix()(i, j), 0.005)
+            << options;
+    EXPECT_TRUE(json["converged"].get<bool>());
+    EXPECT_LT(json["rms_m"].get<double>(), 0.03);
+    EXPECT_GT(json["overlap"].get<double>(), 0.99);
+    EXPECT_GE(json["iterations"].get<int>(), 1);
+    EXPECT_GE(json["time_ms"].get<double>(), 0.0);
+    EXPECT_TRUE(json["undetermined"].empty());
+  }
+}
+
+TEST(RegisterCli, WritesTheAlignedSourceWhole) {
+  const TemporaryFolder folder;
+  WriteCorner(folder.path() / "s.csv", Pose::Identity());
+  WriteCorner(folder.path() / "t.csv", FromXyYaw(0.05, 0.0, 0.02));
+  EXPECT_EQ(Register("s.csv t.csv --voxel 0.1 --out a.ply", folder).code, 0);
+  EXPECT_NE(Contents(folder.path() / "a.ply").find("element vertex 1500\n"), std::string::npos);
+  EXPECT_EQ(Register("a.ply t.csv", folder).code, 0);
+  EXPECT_EQ(Register("s.csv t.csv --out no/such/folder.ply", folder).code, 3);
+}
+
+TEST(RegisterCli, SaysWithExitOneThatItDidNotConverge) {
+  const TemporaryFolder folder;
+  WriteCorner(folder.path() / "s.csv", Pose::Identity());
+  WriteCorner(folder.path() / "far.csv", FromXyYaw(50.0, 0.0, 0.0));
+  WriteCorner(folder.path() / "floor.csv", Pose::Identity(), true);
+  std::ofstream(folder.path() / "line.csv") << "0,0,0\n1,1,1\n2,2,2\n3,3,3\n";
+  std::ofstream(folder.path() / "same.csv") << "1,1,1\n1,1,1\n1,1,1\n1,1,1\n";
+  const std::pair<const char*, const char*> cases[] = {
+      {"s.csv far.csv", "too few pairs"},         {"floor.csv floor.csv", "3 of 6 directions"},
+      {"line.csv line.csv", "1 of 6 directions"}, {"same.csv same.csv", "not converged"},
+      {"s.csv same.csv", "not converged"},        {"same.csv s.csv", "not converged"}};
+  for (const auto& [files, part] : cases) {
+    const Outcome outcome = Register(files, folder);
+    EXPECT_EQ(outcome.code, 1) << outcome.said;
+    EXPECT_NE(outcome.said.find(part), std::string::npos) << outcome.said;
+    const auto json = nlohmann::json::parse(Register(std::string(files) + " --json", folder).said);
+    EXPECT_FALSE(json["converged"].get<bool>()) << files;
+  }
+}
+
+TEST(RegisterCli, RefusesBadInputInOneSentence) {
+  const TemporaryFolder folder;
+  WriteCorner(folder.path() / "s.csv", Pose::Identity());
+  std::ofstream(folder.path() / "two.csv") << "x,y,z\n1,2,3\nnan,1,1\n4,5,6\n";
+  std::ofstream(folder.path() / "empty.csv");
+  std::ofstream(folder.path() / "bad.csv") << "1,2,3\n1,2\n";
+  std::ofstream(folder.path() / "huge.ply")
+      << "ply\nformat ascii 1.0\nelement vertex 1000000000\nproperty float x\nproperty float y\n"
+         "property float z\nend_header\n1 2 3\n";
+  const std::pair<const char*, const char*> cases[] = {
+      {"s.csv", "target"},
+      {"s.csv none.ply", "none.ply"},
+      {"s.csv two.csv", "two.csv: too few points; expected 3 or more, got 2, with 1 left out"},
+      {"empty.csv s.csv", "empty.csv"},
+      {"s.csv bad.csv", "bad.csv:2"},
+      {"s.csv huge.ply", "huge.ply:3"},
+      {"s.csv s.csv --method icp", "--method"},
+      {"s.csv s.csv --voxel 0", "--voxel"},
+      {"s.csv s.csv --max-distance nan", "--max-distance"},
+      {"s.csv s.csv --guess 1,2,3", "--guess"},
+      {"s.csv s.csv --guess 1,2,3,4,5,x", "--guess"},
+      {"s.csv s.csv --guess 2,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1", "not a rotation"},
+      {"s.csv s.csv --guess -1,0,0,0,0,nan", "--guess"}};
+  for (const auto& [arguments, part] : cases) {
+    const Outcome outcome = Register(arguments, folder);
+    EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.said;
+    EXPECT_EQ(std::ranges::count(outcome.said, '\n'), 1) << outcome.said;
+    EXPECT_NE(outcome.said.find(part), std::string::npos) << outcome.said;
+  }
+  EXPECT_LE(std::ranges::count(Register("--help", folder).said, '\n'), 40);
+}
+
+}  // namespace
+}  // namespace merlin

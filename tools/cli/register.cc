@@ -1,0 +1,203 @@
+// `merlin register`: aligns two clouds from files, and says how well.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/types/error.h"
+#include "scenarios/judge/writers.h"
+#include "slam/register/align.h"
+#include "tools/cli/commands.h"
+#include "tools/cloud/cloud_file.h"
+#include "tools/cloud/text.h"
+
+namespace merlin::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::string_view kMethodNames[] = {"point", "plane", "gicp", "auto"};
+
+struct Arguments {
+  std::string source, target, method = "auto", guess, out;
+  std::optional<double> max_distance_m, voxel_m;
+  bool json = false;
+};
+
+struct Clouds {
+  CloudFile source, target;
+  Cloud thin_source, thin_target;  // as registered
+};
+
+[[noreturn]] void RefuseGuess(const std::string& text, const std::string& why) {
+  throw InputError("--guess", why, "x,y,z,roll,pitch,yaw in metres and radians, or the 16 numbers of a pose row by row",
+                   cloud_text::Quoted(text));
+}
+
+Pose ReadGuess(const std::string& text) {
+  if (text.empty()) return Pose::Identity();
+  std::vector<std::string_view> parts;
+  cloud_text::SplitAt(',', text, parts);
+  std::vector<double> n;
+  for (const std::string_view part : parts) {
+    n.push_back(cloud_text::ToNumber<double>(part).value_or(NAN));
+    if (!(std::abs(n.back()) <= 1e9)) RefuseGuess(text, "no such value");
+  }
+  if (n.size() != 6 && n.size() != 16) RefuseGuess(text, "another count of numbers");
+  Pose guess = Pose::Identity();
+  if (n.size() == 6) {
+    guess.translation() << n[0], n[1], n[2];
+    guess.linear() =
+        (Eigen::AngleAxisd(n[5], Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(n[4], Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(n[3], Eigen::Vector3d::UnitX()))
+            .toRotationMatrix();
+    return guess;
+  }
+  guess.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(n.data());
+  // People copy rounded numbers.
+  const Eigen::Matrix3d R = guess.linear();
+  if ((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() > 1e-2 || R.determinant() < 0.0 ||
+      guess.matrix().row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0))
+    RefuseGuess(text, "not a rotation and a translation");
+  guess.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  return guess;
+}
+
+CloudFile ReadPoints(const std::string& file) {
+  CloudFile points = ReadCloud(file);
+  if (points.cloud.size() >= 3) return points;
+  throw InputError(file, "too few points", "3 or more",
+                   std::to_string(points.cloud.size()) +
+                       (points.left_out ? ", with " + std::to_string(points.left_out) + " left out" : ""));
+}
+
+AlignConfig ConfigOf(const Arguments& a) {
+  AlignConfig config;
+  config.max_distance_m = a.max_distance_m.value_or(0.0);
+  config.method = static_cast<AlignMethod>(std::ranges::find(kMethodNames, a.method) - std::begin(kMethodNames));
+  return config;
+}
+
+std::string Words(const AlignResult& result) {
+  switch (result.end) {
+    case AlignEnd::kConverged:
+      return "converged";
+    case AlignEnd::kTooFewPairs:
+      return "not converged: too few pairs";
+    case AlignEnd::kUndetermined:
+      return fmt::format("not converged: {} of 6 directions are not held", result.undetermined.count());
+    case AlignEnd::kIterations:
+      return "not converged: still moving at the last iteration";
+  }
+  return "";
+}
+
+ordered_json Rows(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  ordered_json numbers = ordered_json::array();
+  for (int i = 0; i < matrix.rows(); ++i)
+    for (int j = 0; j < matrix.cols(); ++j) numbers.push_back(matrix(i, j));
+  return numbers;
+}
+
+std::string Json(const AlignResult& r, const Clouds& clouds, double time_ms) {
+  ordered_json open = ordered_json::array();
+  for (const auto& direction : r.undetermined.directions.colwise()) open.push_back(Rows(direction));
+  return ordered_json{{"T_target_source", Rows(r.T_target_source.matrix())},
+                      {"converged", r.converged()},
+                      {"ended", Words(r)},
+                      {"rms_m", r.rms_m},
+                      {"overlap", r.overlap},
+                      {"inliers", r.inliers},
+                      {"iterations", r.iterations},
+                      {"time_ms", time_ms},
+                      {"method", kMethodNames[static_cast<int>(r.method)]},
+                      {"max_distance_m", r.max_distance_m},
+                      {"covariance", Rows(r.covariance)},
+                      {"undetermined", open},
+                      {"points", {clouds.thin_source.size(), clouds.thin_target.size()}},
+                      {"left_out", {clouds.source.left_out, clouds.target.left_out}}}
+             .dump() +
+         "\n";
+}
+
+std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
+  std::string text = "T_target_source\n";
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) text += fmt::format(" {:12.7f}", r.T_target_source.matrix()(i, j));
+    text += "\n";
+  }
+  text += fmt::format("{}\n{} of {} source points have a target point within {:.4g} m (overlap {:.3f}), rms {:.4g} m\n",
+                      Words(r), r.inliers, clouds.thin_source.size(), r.max_distance_m, r.overlap, r.rms_m);
+  for (const auto& d : r.undetermined.directions.colwise())
+    text += fmt::format("not held: move {:.3f} {:.3f} {:.3f}, turn {:.3f} {:.3f} {:.3f}\n", d(0), d(1), d(2), d(3),
+                        d(4), d(5));
+  if (clouds.source.left_out + clouds.target.left_out > 0)
+    text +=
+        fmt::format("left out: {} and {} points that are not finite\n", clouds.source.left_out, clouds.target.left_out);
+  return text + fmt::format("{}: {} onto {} points, {} iterations, {:.1f} ms\n",
+                            kMethodNames[static_cast<int>(r.method)], clouds.thin_source.size(),
+                            clouds.thin_target.size(), r.iterations, time_ms);
+}
+
+// The whole source, in the target's frame.
+void WriteAligned(const std::string& out, const CloudFile& source, const Pose& T_target_source) {
+  std::vector<MapPoint> points(source.cloud.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].p_map = (T_target_source * source.cloud.positions[i]).cast<float>();
+    if (!source.rgb.empty()) points[i].rgb = source.rgb[i];
+  }
+  WriteFile(out, ToPly(points));
+}
+
+// NaN passes CLI11's own check of a range.
+void CheckLength(const char* option, const std::optional<double>& length_m) {
+  if (length_m && !(*length_m > 0.0 && *length_m <= 1e9))
+    throw InputError(option, "no such length", "metres above 0, up to 1e9", fmt::format("{:g}", *length_m));
+}
+
+int Register(const Arguments& a) {
+  CheckLength("--max-distance", a.max_distance_m);
+  CheckLength("--voxel", a.voxel_m);
+  const Pose guess = ReadGuess(a.guess);
+  Clouds clouds{ReadPoints(a.source), ReadPoints(a.target), {}, {}};
+  clouds.thin_source = a.voxel_m ? Thin(clouds.source.cloud, *a.voxel_m) : clouds.source.cloud;
+  clouds.thin_target = a.voxel_m ? Thin(clouds.target.cloud, *a.voxel_m) : clouds.target.cloud;
+  if (interrupted) return kInterrupted;
+  const AlignConfig config = ConfigOf(a);
+  const auto begin = std::chrono::steady_clock::now();
+  const AlignResult result = Align(clouds.thin_source, clouds.thin_target, guess, config);
+  const double time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  if (interrupted) return kInterrupted;
+  if (!a.out.empty()) WriteAligned(a.out, clouds.source, result.T_target_source);
+  fmt::print("{}", a.json ? Json(result, clouds, time_ms) : Text(result, clouds, time_ms));
+  return result.converged() ? kPass : kFail;
+}
+
+}  // namespace
+
+void AddRegister(CLI::App& app, int& exit_code) {
+  const auto a = std::make_shared<Arguments>();
+  CLI::App* reg =
+      app.add_subcommand("register", "aligns two clouds: finds T_target_source, p_target = T_target_source * p_source");
+  reg->add_option("source", a->source, "PLY, PCD or CSV (x,y,z with or without a header), in metres")->required();
+  reg->add_option("target", a->target, "likewise; stays where it is")->required();
+  reg->add_option("--method", a->method, "how a pair is measured; default gicp where there are surfaces, else point")
+      ->check(CLI::IsMember({"point", "plane", "gicp"}));
+  reg->add_option("--max-distance", a->max_distance_m,
+                  "M: points farther apart are no pair; default 1/20 of the target's diagonal, 1/4 with point");
+  reg->add_option("--guess", a->guess,
+                  "T_target_source: x,y,z,roll,pitch,yaw (m, rad), or 16 numbers row by row; default none");
+  reg->add_option("--voxel", a->voxel_m, "M: first thins both to one point a cube of this edge");
+  reg->add_option("--out", a->out, "PLY: the source in the target's frame, also where it did not converge");
+  reg->add_flag("--json", a->json, "for machines");
+  reg->footer("exit code: 0 converged, 1 not (few pairs, or a direction that the clouds do not hold), 2 bad input");
+  reg->callback([a, &exit_code] { exit_code = Register(*a); });
+}
+
+}  // namespace merlin::cli

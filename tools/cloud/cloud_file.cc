@@ -1,0 +1,29 @@
+#include "tools/cloud/cloud_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "robot/types/error.h"
+
+namespace merlin {
+
+CloudFile ReadCloud(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto parse = ending == ".ply"                                           ? ParsePly
+                     : ending == ".pcd"                                         ? ParsePcd
+                     : ending == ".csv" || ending == ".txt" || ending == ".xyz" ? ParseCsv
+                                                                                : nullptr;
+  if (parse == nullptr) throw InputError(file.string(), "not a cloud by its name", "a .ply, .pcd, .csv, .txt or .xyz");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw InputError(file.string(), "a folder", "a file");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string(), "cannot be read: no such file, or no permission");
+  const std::string bytes(std::istreambuf_iterator<char>(in), {});
+  return parse(bytes, file.string());
+}
+
+}  // namespace merlin

@@ -1,0 +1,80 @@
+// Lines, words and numbers of the text in cloud files.
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace merlin::cloud_text {
+
+// Lines one by one, without their ends (\n or \r\n), counted from 1.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : text_(text) {}
+  std::optional<std::string_view> Next() {
+    if (at_ >= text_.size()) return std::nullopt;
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    std::string_view line = text_.substr(at_, end - at_);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    at_ = std::min(end + 1, text_.size());
+    ++number_;
+    return line;
+  }
+  std::size_t number() const { return number_; }  // of the line last given
+  std::size_t at() const { return at_; }          // byte where the next begins
+  std::string_view Rest() const { return text_.substr(at_); }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0, number_ = 0;
+};
+
+constexpr std::string_view kBlanks = " \t\v\f\r";
+
+inline std::string_view Trim(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+  const std::size_t end = text.find_last_not_of(kBlanks);
+  return end == std::string_view::npos ? std::string_view{} : text.substr(begin, end + 1 - begin);
+}
+
+// Into `words`, whose memory serves again for the next line.
+inline void SplitWords(std::string_view line, std::vector<std::string_view>& words) {
+  words.clear();
+  for (std::size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kBlanks, end);
+  }
+}
+
+inline void SplitAt(char separator, std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
+    fields.push_back(Trim(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+}
+
+// The whole text as a number; nan and inf are numbers.
+template <class Number>
+std::optional<Number> ToNumber(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+// For a message: short, and nothing that a terminal would obey.
+inline std::string Quoted(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string quoted = "'";
+  for (const char c : text.substr(0, kLongest)) quoted += c >= ' ' && c <= '~' ? c : '?';
+  return quoted + (text.size() > kLongest ? "...'" : "'");
+}
+
+}  // namespace merlin::cloud_text

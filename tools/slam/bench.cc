@@ -1,0 +1,206 @@
+#include "tools/slam/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <variant>
+
+#include "perception/pipeline.h"
+#include "scenarios/names.h"
+#include "scenarios/twin_options.h"
+#include "slam/slam.h"
+
+namespace merlin {
+namespace {
+
+constexpr char kScenario[] = "corridor_short";
+constexpr double kSpeed_m_s = 0.5;
+constexpr double kDrive_s = 16.0;
+constexpr double kHalfWidth_m = 1.05, kHeight_m = 2.5, kEnd_m = 6.5;  // of the corridor made of numbers
+const Eigen::Vector3d kCamera_base(0.3, 0.0, 0.35);
+
+// What one row is made of.
+struct Times {
+  std::vector<double> ms;
+  std::vector<int> points;
+
+  template <class Work>
+  void Add(int count, const Work& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    points.push_back(count);
+  }
+};
+
+template <class Value>
+Value Quantile(std::vector<Value> values, double share) {
+  if (values.empty()) return Value{};
+  std::ranges::sort(values);
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+SlamBench::Row RowOf(const std::string& what, const Times& times, double median_limit_ms, double p99_limit_ms) {
+  return {what,        Quantile(times.points, 0.5), Quantile(times.ms, 0.5), Quantile(times.ms, 0.99), median_limit_ms,
+          p99_limit_ms};
+}
+
+// How far a ray goes in a corridor along x, with an end wall.
+double Range_m(const Eigen::Vector3d& from, const Eigen::Vector3d& along) {
+  double range_m = HUGE_VAL;
+  const auto meet = [&](int axis, double plane_m) {
+    const double t = (plane_m - from(axis)) / along(axis);
+    if (t > 0.0) range_m = std::min(range_m, t);
+  };
+  meet(0, kEnd_m);
+  meet(1, kHalfWidth_m);
+  meet(1, -kHalfWidth_m);
+  meet(2, 0.0);
+  meet(2, kHeight_m);
+  return range_m;
+}
+
+// All 64 x 48 pixels of a camera on the car, with noise along the rays.
+std::vector<Point> View(const Pose& T_map_base, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise;
+  std::vector<Point> points_base;
+  for (int v = 0; v < 48; ++v)
+    for (int u = 0; u < 64; ++u) {
+      const Eigen::Vector3d ray = Eigen::Vector3d(1.0, (31.5 - u) / 60.0, (23.5 - v) / 60.0).normalized();
+      const double range_m = Range_m(T_map_base * kCamera_base, T_map_base.linear() * ray);
+      const double sigma_m = 0.004 + 0.002 * range_m;
+      points_base.push_back({.position = (kCamera_base + (range_m + sigma_m * noise(random)) * ray).cast<float>(),
+                             .sigma_m = static_cast<float>(sigma_m)});
+    }
+  return points_base;
+}
+
+// A little beside the truth, held as odometry and compass hold it.
+PosePrior Guess(const Pose& T_map_base, int round) {
+  PosePrior prior;
+  prior.T_map_base =
+      T_map_base * FromXyYaw(0.01 * std::cos(3.0 * round), 0.01 * std::sin(2.0 * round), 0.004 * std::sin(5.0 * round));
+  Vector6d sigma;
+  sigma << 0.003, 0.003, 0.002, 0.001, 0.001, 0.004;
+  prior.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+  return prior;
+}
+
+void BenchRegistration(SlamBench& bench, const std::atomic<bool>& interrupted) {
+  const SlamConfig config;
+  VoxelMap map(config.local);
+  for (int i = 0; i < 12; ++i) {
+    const Pose T_map_base = FromXyYaw(-1.0 + 0.1 * i, 0.05 * std::sin(i), 0.05 * std::cos(i));
+    map.Insert(View(T_map_base, static_cast<std::uint32_t>(i)), T_map_base, 0.1 * i);
+  }
+  Times whole, thinned;
+  for (int round = 0; round < bench.rounds && !interrupted; ++round) {
+    const Pose T_map_base = FromXyYaw(0.15 + 0.0002 * round, 0.02 * std::cos(round), 0.03 * std::sin(round));
+    const std::vector<Point> points = View(T_map_base, static_cast<std::uint32_t>(100 + round));
+    const std::vector<Point> thin = Downsample(points, config.source_voxel_m);
+    const PosePrior prior = Guess(T_map_base, round);
+    for (const auto& [times, source] : {std::pair(&whole, &points), std::pair(&thinned, &thin)})
+      times->Add(static_cast<int>(source->size()),
+                 [&] { (void)Register(*source, kCamera_base.cast<float>(), map, prior, config.icp); });
+  }
+  bench.rows.push_back(RowOf("registration, every point", whole, 2.0, 0.0));
+  bench.rows.push_back(RowOf(fmt::format("registration, thinned to {:g} m", config.source_voxel_m), thinned, 0.0, 0.0));
+}
+
+// What the devices of a twin deliver on a straight drive, in the order in which they do.
+using Measurement = std::variant<DriveState, CompassReading, DepthFrame>;
+
+std::vector<Measurement> RecordDrive(Twin& twin, const std::atomic<bool>& interrupted) {
+  const Robot robot = twin.robot();
+  const Duration tick = FromSeconds(1.0 / robot.depth->Info().rate_hz);
+  std::vector<Measurement> measurements;
+  while (!interrupted && robot.clock->WaitUntil(robot.clock->Now() + tick)) {
+    robot.drive->Send({.speed_m_s = kSpeed_m_s, .steering_rad = 0.0, .valid_for = std::chrono::seconds(1)});
+    while (auto state = robot.drive->Poll()) measurements.emplace_back(*state);
+    while (auto reading = robot.compass->Poll()) measurements.emplace_back(*reading);
+    while (auto frame = robot.depth->Poll()) measurements.emplace_back(std::move(*frame));
+  }
+  return measurements;
+}
+
+void BenchFrames(SlamBench& bench, const std::atomic<bool>& interrupted) {
+  RunOptions options{.name = kScenario, .scenario = ReadScenario(kScenario, {}), .out = {}, .progress = {}};
+  options.scenario.sensors.color.reset();
+  options.scenario.duration_s = kDrive_s;
+  Twin twin(TwinOptionsOf(options.scenario, options));
+  const DepthCameraInfo& camera = twin.robot().depth->Info();
+  Pipeline pipeline(
+      {BelievedCar(options.scenario.car), camera.sheet, camera.T_base_camera, std::nullopt, Pose::Identity()},
+      options.scenario.perception);
+  Slam slam(options.scenario.slam);
+  Times times;
+  int lost = 0;
+  for (Measurement& measurement : RecordDrive(twin, interrupted)) {
+    if (const auto* state = std::get_if<DriveState>(&measurement)) pipeline.Add(*state);
+    if (const auto* reading = std::get_if<CompassReading>(&measurement)) pipeline.Add(*reading);
+    auto* frame = std::get_if<DepthFrame>(&measurement);
+    if (frame == nullptr) continue;
+    std::optional<Observation> observation;
+    std::optional<Pose> T_map_base;
+    times.Add(0, [&] {
+      observation = pipeline.Process(std::move(*frame));
+      if (observation) T_map_base = slam.Update(*observation);
+    });
+    times.points.back() = observation ? static_cast<int>(observation->points_base.size()) : 0;
+    if (!T_map_base) times.ms.pop_back(), times.points.pop_back();  // the heading settles: no pose yet
+    lost += T_map_base && slam.lost_frames() > 0 ? 1 : 0;
+  }
+  bench.frames = static_cast<int>(times.ms.size());
+  bench.not_converged = bench.frames > 0 ? static_cast<double>(lost) / bench.frames : 0.0;
+  bench.rows.push_back(RowOf("frame, filter to pose", times, 3.0, 10.0));
+}
+
+std::string Limit(double limit_ms) { return limit_ms > 0.0 ? fmt::format("({:g})", limit_ms) : ""; }
+
+}  // namespace
+
+SlamBench BenchSlam(const std::atomic<bool>& interrupted) {
+  SlamBench bench;
+  BenchRegistration(bench, interrupted);
+  BenchFrames(bench, interrupted);
+  return bench;
+}
+
+std::string Table(const SlamBench& bench) {
+  std::string text = fmt::format(
+      "one thread; registration in a corridor with an end wall, {} times; {} frames of a drive in {} ({:.1f} % not "
+      "registered)\n  {:<36} {:>7} {:>16} {:>16}\n",
+      bench.rounds, bench.frames, kScenario, 100.0 * bench.not_converged, "ms (at most)", "points", "median", "p99");
+  for (const SlamBench::Row& row : bench.rows)
+    text += fmt::format("  {:<36} {:>7} {:>9.2f} {:>6} {:>9.2f} {:>6}\n", row.what, row.points, row.median_ms,
+                        Limit(row.median_limit_ms), row.p99_ms, Limit(row.p99_limit_ms));
+  return text;
+}
+
+std::string ToJson(const SlamBench& bench) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  const auto limit = [](double limit_ms) {
+    return limit_ms > 0.0 ? nlohmann::ordered_json(limit_ms) : nlohmann::ordered_json();
+  };
+  for (const SlamBench::Row& row : bench.rows)
+    rows.push_back({{"what", row.what},
+                    {"points", row.points},
+                    {"median_ms", row.median_ms},
+                    {"p99_ms", row.p99_ms},
+                    {"median_limit_ms", limit(row.median_limit_ms)},
+                    {"p99_limit_ms", limit(row.p99_limit_ms)}});
+  return nlohmann::ordered_json{{"scenario", kScenario},
+                                {"rounds", bench.rounds},
+                                {"frames", bench.frames},
+                                {"not_converged_share", bench.not_converged},
+                                {"rows", rows}}
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace merlin

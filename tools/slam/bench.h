@@ -1,0 +1,29 @@
+// How fast the stack finds the pose: registration alone, and a whole frame from filter to pose.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace merlin {
+
+struct SlamBench {
+  struct Row {
+    std::string what;
+    int points = 0;  // median
+    double median_ms = 0.0, p99_ms = 0.0;
+    double median_limit_ms = 0.0, p99_limit_ms = 0.0;  // 0: none
+  };
+  int rounds = 200;            // of each registration
+  int frames = 0;              // of the drive
+  double not_converged = 0.0;  // share of its frames
+  std::vector<Row> rows{};
+};
+
+// Ends early, and unfinished, when interrupted becomes true.
+SlamBench BenchSlam(const std::atomic<bool>& interrupted);
+
+std::string Table(const SlamBench& bench);
+std::string ToJson(const SlamBench& bench);
+
+}  // namespace merlin
