@@ -28,7 +28,7 @@ struct Evaluation {
   std::vector<std::string> warnings;
   std::size_t truth_poses = 0, estimate_poses = 0, pairs = 0, relative_pairs = 0;
   Ate ate;
-  std::optional<ErrorStatistics> translation_m, rotation_deg;
+  std::optional<ErrorStatistics> translation_m{}, rotation_deg{};
 };
 
 Alignment AlignmentOf(const std::string& name) {

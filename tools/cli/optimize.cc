@@ -28,7 +28,7 @@ double Now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
 
 struct Solution {
   G2oFile file;
-  OptimizeResult result;
+  OptimizeResult result{};
   double time_s = 0.0, iteration_ms = 0.0;
 };
 
