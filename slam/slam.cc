@@ -6,7 +6,6 @@
 namespace merlin {
 namespace {
 
-constexpr double kKnown_m = 3.0;       // so far after a former visit was last recognised its key frames are trusted
 constexpr int kRecallAtOnce = 2;       // former key frames put back into the local map a frame: it keeps up at 4 m/s
 constexpr double kRecall_m = 4.0;      // of views whose middles are nearer than this
 constexpr double kLate_m = 1.0;        // what was seen on the last metre looks for loops
@@ -65,7 +64,7 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   if (trusted) {
     Keep(observation, T_map_base);
     if (closer_.IsDue(path_m_)) SearchLoop(observation, T_map_base);
-    if (KnowsThePlace()) RecallFormer(T_map_base);
+    if (closer_.KnowsThePlace(path_m_)) RecallFormer(T_map_base);
   }
   if (path_m_ - pruned_at_m_ > 1.0) {
     local_.ForgetBefore(path_m_ - config_.local_length_m);
@@ -106,10 +105,8 @@ void Slam::Keep(const Observation& observation, const Pose& T_map_base) {
   keyframes_.push_back(std::move(keyframe));
 }
 
-bool Slam::KnowsThePlace() const { return closer_.SinceLoop_m(path_m_) < kKnown_m; }
-
 bool Slam::IsRevisit(const Pose& T_map_base) const {
-  if (!KnowsThePlace()) return false;
+  if (!closer_.KnowsThePlace(path_m_)) return false;
   return std::ranges::any_of(keyframes_, [&](const Keyframe& keyframe) {
     return path_m_ - keyframe.path_m >= config_.loop.apart_m &&
            (keyframe.T_map_base.translation() - T_map_base.translation()).head<2>().norm() < config_.revisit_m &&

@@ -93,7 +93,6 @@ class Slam {
   bool Begin(const Observation& observation);  // false: it waits for the heading
   void Keep(const Observation& observation, const Pose& T_map_base);
   void Record(Time stamp, const Pose& T_map_base);
-  bool KnowsThePlace() const;  // a former visit has been recognised, and not long ago
   bool IsRevisit(const Pose& T_map_base) const;
   void RecallFormer(const Pose& T_map_base);
   void SearchLoop(const Observation& observation, Pose& T_map_base);

@@ -10,7 +10,8 @@
 namespace merlin {
 namespace {
 
-constexpr std::size_t kFormerMax = 30;  // key frames that the former map is made of
+constexpr std::size_t kFormerMax = 15;  // key frames that the former map is made of, every second of the nearest
+constexpr double kThin_m = 0.08;        // edge of the cubes that they give one point each of
 constexpr double kCoarse_m = 0.4, kFine_m = 0.1;
 constexpr int kIterations = 30;
 constexpr double kStep = 2e-3;  // m and rad: pairs that change to and fro hold a fit from ending more finely
@@ -30,15 +31,17 @@ std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const 
   }
   std::ranges::sort(views);
   std::vector<std::size_t> indices;
-  for (const auto& [distance_m, i] : views) indices.push_back(i);
-  indices.resize(std::min(indices.size(), kFormerMax));
+  for (std::size_t i = 0; i < views.size() && indices.size() < kFormerMax; i += 2) indices.push_back(views[i].second);
   return indices;
 }
 
-VoxelMap MapOf(std::span<const Keyframe> keyframes, const std::vector<std::size_t>& indices, double voxel_m) {
-  VoxelMap map({.voxel_m = voxel_m});
-  for (const std::size_t i : indices) map.Insert(keyframes[i].points_base, keyframes[i].T_map_base, 0.0);
-  return map;
+// One map of them all, and a second, coarser one.
+void AddTo(VoxelMap& fine, VoxelMap& coarse, std::span<const Keyframe> keyframes, const std::vector<std::size_t>& indices) {
+  for (const std::size_t i : indices) {
+    const std::vector<Point> points = Downsample(keyframes[i].points_base, kThin_m);
+    fine.Insert(points, keyframes[i].T_map_base, 0.0);
+    coarse.Insert(points, keyframes[i].T_map_base, 0.0);
+  }
 }
 
 double ShareMeeting(const VoxelMap& map, std::span<const Point> points_base, const Pose& T_map_base) {
@@ -61,7 +64,8 @@ std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<cons
   sigma << config.start_sigma_m, config.start_sigma_m, 0.01, 0.005, 0.005, config.start_sigma_rad;
   prior.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
   // Coarse first: a point finds its surface up to a voxel's edge away, whatever the walls' distance the estimate is off.
-  const VoxelMap coarse = MapOf(keyframes, former, kCoarse_m), fine = MapOf(keyframes, former, kFine_m);
+  VoxelMap coarse({.voxel_m = kCoarse_m}), fine({.voxel_m = kFine_m});
+  AddTo(fine, coarse, keyframes, former);
   const IcpConfig wide{
       .iterations_max = kIterations, .step_converged = kStep, .kernel_m = 0.5 * kCoarse_m, .map_sigma_m = 0.1 * kCoarse_m};
   const IcpConfig narrow{.iterations_max = kIterations, .step_converged = kStep};

@@ -15,13 +15,14 @@ struct LoopConfig {
   bool enabled = true;                // off: the map is left as it was driven
   double apart_m = 12.0;              // [1, 1e4] driven between two visits; less is no loop
   double every_m = 0.25;              // [0.05, 100] driven between two searches
+  double every_known_m = 2.0;         // [0.05, 2.5] and where a former visit was just recognised
   double reach_m = 1.5;               // [0.1, 100] between the middles of two views of one place...
   double reach_share = 0.01;          // [0, 1] ...and this share of the way since the former, which the estimate may be off by
   double turn_rad = 0.8;              // [0.01, 3.2] between their directions
   double start_sigma_m = 0.3;         // [0.001, 10] the estimate's error before it is compared; guess
   double start_sigma_rad = 0.02;      // [1e-4, 3] and of its direction; guess
   double overlap_min = 0.15;          // [0, 1] of its points must lie near the former map: of a loop's first frames little does
-  double on_surface_min = 0.6;        // [0, 1] and of those on its surfaces, not before or behind them
+  double on_surface_min = 0.65;       // [0, 1] and of those on its surfaces, not before or behind them
   double rms_max_m = 0.035;            // [1e-3, 1] of their distances from it
   double sigma_max_m = 0.05;          // [1e-3, 10] the shape must tell the place this well in both directions
   int agreeing_min = 2;               // [1, 100] searches in a row whose corrections agree make a loop
@@ -39,6 +40,7 @@ void Visit(Visitor& v, LoopConfig& c) {
   v("enabled", c.enabled);
   v("apart_m", c.apart_m, {1.0, 1e4});
   v("every_m", c.every_m, {0.05, 100.0});
+  v("every_known_m", c.every_known_m, {0.05, 2.5});
   v("reach_m", c.reach_m, {0.1, 100.0});
   v("reach_share", c.reach_share, {0.0, 1.0});
   v("turn_rad", c.turn_rad, {0.01, 3.2});

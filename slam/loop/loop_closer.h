@@ -22,7 +22,11 @@ class LoopCloser {
   // needs no loop; one that strains the ways and headings more than their errors allow is none.
   std::optional<std::vector<Pose>> Search(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
                                           const Pose& T_map_base, double path_m);
-  bool IsDue(double path_m) const { return config_.enabled && path_m - searched_m_ >= config_.every_m; }
+  bool IsDue(double path_m) const {
+    return config_.enabled && path_m - searched_m_ >= (KnowsThePlace(path_m) ? config_.every_known_m : config_.every_m);
+  }
+  // A former visit was recognised so short a way ago that its key frames can be trusted here.
+  bool KnowsThePlace(double path_m) const { return SinceLoop_m(path_m) < kKnown_m; }
 
   // Path since a former visit was last recognised; infinite: never.
   double SinceLoop_m(double path_m) const { return path_m - recognised_m_.value_or(-HUGE_VAL); }
@@ -30,6 +34,7 @@ class LoopCloser {
   int loops() const { return static_cast<int>(loops_.size()); }
 
  private:
+  static constexpr double kKnown_m = 3.0;
   bool Agrees(const Loop& loop, const Pose& T_map_base);
   PoseGraph Network(std::span<const Keyframe> keyframes) const;
 

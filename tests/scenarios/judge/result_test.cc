@@ -28,6 +28,7 @@ TEST(ToJson, HasTheDocumentedKeysInOrderAndNullForWhatIsNotKnown) {
                                                              "distance_m",
                                                              "laps",
                                                              "collisions",
+                                                             "loops_closed",
                                                              "ate_rmse_m",
                                                              "ate_online_rmse_m",
                                                              "rpe_translation_percent",
