@@ -8,6 +8,7 @@
 
 #include "autonomy/avoid.h"
 #include "autonomy/corridor.h"
+#include "autonomy/energy.h"
 #include "perception/observation.h"
 #include "robot/types/measurements.h"
 #include "slam/slam.h"
@@ -25,6 +26,7 @@ struct PilotConfig {
   int lost_frames_max = 20;          // [1, 1000] frames in a row without registration, then it stands until one fits
   AvoidConfig avoid;
   CorridorConfig corridor;
+  EnergyConfig energy;
 };
 
 template <class Visitor>
@@ -39,6 +41,7 @@ void Visit(Visitor& v, PilotConfig& c) {
   v("lost_frames_max", c.lost_frames_max, {1.0, 1000.0});
   v("avoid", c.avoid);
   v("corridor", c.corridor);
+  v("energy", c.energy);
 }
 
 struct Task {

@@ -29,10 +29,15 @@ DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const Percep
       period_(FromSeconds(1.0 / robot.depth->Info().rate_hz)),
       pipeline_(RigOf(robot, car), perception),
       slam_(slam),
-      pilot_(car, task, pilot) {}
+      pilot_(car, task, pilot),
+      energy_(car, pilot.energy) {}
 
 bool DriveLoop::Tick(const LoopObserver& observer) {
-  while (auto state = robot_.drive->Poll()) last_drive_ = robot_.clock->Now(), pipeline_.Add(*state);
+  while (auto state = robot_.drive->Poll()) {
+    last_drive_ = robot_.clock->Now();
+    pipeline_.Add(*state);
+    energy_.Update(*state);
+  }
   while (robot_.compass != nullptr) {
     const auto reading = robot_.compass->Poll();
     if (!reading) break;
@@ -53,7 +58,8 @@ bool DriveLoop::Tick(const LoopObserver& observer) {
     const auto observation = pipeline_.Process(std::move(*frame));
     if (!observation) continue;
     const auto T_map_base = slam_.Update(*observation);
-    const Decision decision = pilot_.Decide(*observation, T_map_base, slam_);
+    Decision decision = pilot_.Decide(*observation, T_map_base, slam_);
+    if (energy_.level() == EnergyLevel::kLow) decision.doing += "; battery low";
     stack_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
     robot_.drive->Send(decision.command);
     done = decision.done;
@@ -87,6 +93,7 @@ LoopEnd DriveLoop::Run(const std::atomic<bool>& stop, const LoopObserver& observ
   for (Time tick = robot_.clock->Now() + period_; robot_.clock->WaitUntil(tick); tick += period_) {
     if (Tick(observer)) end = LoopEnd::kTaskDone;
     else if (stop.load()) end = LoopEnd::kInterrupted;
+    else if (energy_.level() == EnergyLevel::kEmpty) end = LoopEnd::kBatteryEmpty;
     else if (robot_.clock->Now() - std::min(last_depth_, last_drive_) > kSilent + period_) end = LoopEnd::kDeviceLost;
     else continue;
     Stand();

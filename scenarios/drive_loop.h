@@ -13,7 +13,7 @@
 
 namespace merlin {
 
-enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost };
+enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost, kBatteryEmpty };
 
 // What a run may look at from outside, each called in the loop's thread. Any may be empty.
 struct LoopObserver {
@@ -27,11 +27,12 @@ class DriveLoop {
   DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception, const SlamConfig& slam,
             const Task& task, const PilotConfig& pilot);
 
-  // Until the task is done, the clock ends, stop is set, or the depth camera or the drive is silent for a second. Then, the
-  // clock permitting, brakes and waits until the car stands.
+  // Until the task is done, the clock ends, stop is set, the battery is empty (autonomy/energy.h), or the depth camera or
+  // the drive is silent for a second. Then, the clock permitting, brakes and waits until the car stands.
   LoopEnd Run(const std::atomic<bool>& stop, const LoopObserver& observer);
 
   const Slam& slam() const { return slam_; }
+  const Energy& energy() const { return energy_; }
   const std::vector<double>& stack_ms() const { return stack_ms_; }  // one a depth frame: filter to decision
 
  private:
@@ -45,6 +46,7 @@ class DriveLoop {
   Pipeline pipeline_;
   Slam slam_;
   Pilot pilot_;
+  Energy energy_;
   Time last_depth_{0}, last_drive_{0};
   std::vector<double> stack_ms_;
 };

@@ -102,9 +102,12 @@ class Session {
     result.metrics.peak_rss_mb = PeakRss_mb();
     result.checks = Evaluate(scenario.checks, result.metrics, options_.name);
     if (end == LoopEnd::kDeviceLost) result.fault = "the depth camera or the drive fell silent for a second";
+    if (end == LoopEnd::kBatteryEmpty)
+      result.fault = fmt::format("the battery is empty: {:.2f} V without the motor, and the car stops below {:.2f} V",
+                                 loop.energy().rest_v().value_or(0.0), loop.energy().stop_v());
     result.verdict = end == LoopEnd::kInterrupted ? Verdict::kInterrupted
-                     : end == LoopEnd::kDeviceLost ? Verdict::kFail
-                                                   : Judge(result.checks);
+                     : !result.fault.empty()     ? Verdict::kFail
+                                                 : Judge(result.checks);
     folder.Write("junit.xml", ToJUnit(result));
     folder.Finish(ToJson(result));
     return report;
