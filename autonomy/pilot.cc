@@ -99,6 +99,12 @@ Pilot::Pursuit Pilot::Pursue(const std::vector<Eigen::Vector2d>& path_base) cons
   return pursuit;
 }
 
+void Pilot::Forget() {
+  turn_side_.reset();
+  path_map_.clear();
+  hint_ = {last_yaw_rad_, std::nullopt};
+}
+
 Decision Pilot::Decide(const Observation& observation, const std::optional<Pose>& T_map_base, const Slam& slam) {
   if (!T_map_base) return {Command(0.0, 0.0), false, "waits for its heading"};
   if (!T_map_start_) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "autonomy/arbitrate.h"
 #include "autonomy/avoid.h"
 #include "autonomy/corridor.h"
 #include "autonomy/energy.h"
@@ -27,6 +28,7 @@ struct PilotConfig {
   AvoidConfig avoid;
   CorridorConfig corridor;
   EnergyConfig energy;
+  ArbitrateConfig arbitrate;
 };
 
 template <class Visitor>
@@ -42,6 +44,7 @@ void Visit(Visitor& v, PilotConfig& c) {
   v("avoid", c.avoid);
   v("corridor", c.corridor);
   v("energy", c.energy);
+  v("arbitrate", c.arbitrate);
 }
 
 struct Task {
@@ -69,6 +72,8 @@ class Pilot {
   Pilot(const CarDescription& car, const Task& task, const PilotConfig& config);
   // One decision a depth frame. T_map_base: of this observation, if there is one.
   Decision Decide(const Observation& observation, const std::optional<Pose>& T_map_base, const Slam& slam);
+  // Somebody else has driven: what it meant to drive is old. Its laps still count.
+  void Forget();
 
  private:
   void CountLaps(const Pose& T_map_base);

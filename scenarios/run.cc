@@ -88,7 +88,12 @@ class Session {
     const LoopEnd end = loop.Run(
         stop_, {.depth = [&](const DepthFrame& frame) { evidence.Add(frame), keep(frame.stamp); },
                 .color = [&](const ColorFrame& frame) { evidence.Add(frame); },
-                .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop.slam().path_m(), decision.doing); }});
+                .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop.slam().path_m(), decision.doing); },
+                .hand = [&](Time now, const HandStatus& status) {
+                  if (options_.hand_status) options_.hand_status(now, status);
+                  pacer.Tick(now, loop.slam().path_m(), Name(status.arbitration.driver));
+                }},
+        options_.hand);
     const double wall_s = SecondsSince(first_step);
 
     RunReport report{.result = JudgeRun(options_.name, scenario, robot, true_world(), loop, evidence, folder),
