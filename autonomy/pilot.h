@@ -48,15 +48,21 @@ void Visit(Visitor& v, PilotConfig& c) {
 }
 
 struct Task {
-  std::string behavior = "follow_corridor";  // the only one yet
+  std::string behavior = "follow_corridor";  // or turn_on_stand: the car stands on a turntable, which turns
   int laps = 0;                              // [0, 1000] closed rounds after which it stops; 0: drive on
+  double angle_deg = 360.0;                  // [-3600, 3600] that the stand turns, positive to the left
+  double rate_deg_s = 20.0;                  // [0.1, 180] of the stand
 };
 
 template <class Visitor>
 void Visit(Visitor& v, Task& c) {
   v("behavior", c.behavior);
   v("laps", c.laps, {0.0, 1000.0});
+  v("angle_deg", c.angle_deg, {-3600.0, 3600.0});
+  v("rate_deg_s", c.rate_deg_s, {0.1, 180.0});
 }
+
+inline bool IsOnStand(const Task& task) { return task.behavior == "turn_on_stand"; }
 
 // The names a task's behavior may have.
 std::vector<std::string> BehaviorNames();
@@ -65,6 +71,7 @@ struct Decision {
   DriveCommand command;
   bool done = false;        // the task is finished: the command is to stand
   std::string doing;        // "follows the corridor", "turns left", "waits for an obstacle", ...
+  std::optional<double> stand_rad{};  // where the stand is to turn, from its start; none: nothing new
 };
 
 class Pilot {
@@ -77,6 +84,7 @@ class Pilot {
 
  private:
   void CountLaps(const Pose& T_map_base);
+  Decision TurnOnStand(const Observation& observation);
   void FollowCorridor(const Pose& T_map_base, const Slam& slam);
   void PlanTurn(const Corridor& corridor, const Pose& T_map_base, double side);
   bool TurnIsOver(const Pose& T_map_base) const;
@@ -95,6 +103,8 @@ class Pilot {
   std::optional<Pose> T_map_start_;
   double last_yaw_rad_ = 0.0, turned_rad_ = 0.0;  // since the start, unwrapped
   int laps_ = 0;
+  std::optional<double> stand_yaw_rad_;           // of the odometry at the last frame
+  double stand_turned_rad_ = 0.0;
   CorridorHint hint_;
   std::vector<Eigen::Vector2d> path_map_;         // what it means to drive, from about the car onwards
   std::optional<double> turn_side_;               // +1 left, -1 right, while it turns

@@ -12,11 +12,13 @@ constexpr Duration kStandLimit = std::chrono::seconds(3);
 
 Rig RigOf(const Robot& robot, const CarDescription& car) {
   const DepthCameraInfo& depth = robot.depth->Info();
-  Rig rig{car, depth.sheet, depth.T_base_camera, std::nullopt, Pose::Identity()};
+  Rig rig{.car = car, .depth = depth.sheet, .T_base_depth = depth.T_base_camera, .color = std::nullopt};
   if (robot.color != nullptr) {
     rig.color = robot.color->Info().sheet;
     rig.T_base_color = robot.color->Info().T_base_camera;
   }
+  rig.pans = robot.pan != nullptr && car.pan;
+  rig.on_stand = robot.stand != nullptr;
   return rig;
 }
 
@@ -43,6 +45,16 @@ void DriveLoop::Listen(const LoopObserver& observer) {
     if (status_.state.stamp > Time(0) && state->stamp > status_.state.stamp)
       status_.speed_m_s = counts * metres_per_count_ / Seconds(state->stamp - status_.state.stamp);
     status_.state = *state;
+  }
+  while (robot_.pan != nullptr) {
+    const auto state = robot_.pan->Poll();
+    if (!state) break;
+    pipeline_.AddPan(*state);
+  }
+  while (robot_.stand != nullptr) {
+    const auto state = robot_.stand->Poll();
+    if (!state) break;
+    pipeline_.AddStand(*state);
   }
   while (robot_.compass != nullptr) {
     const auto reading = robot_.compass->Poll();
@@ -81,6 +93,7 @@ bool DriveLoop::Tick(const LoopObserver& observer) {
   bool done = false;
   while (const auto decision = Decide(observer, false)) {
     robot_.drive->Send(decision->command);
+    if (robot_.stand != nullptr && decision->stand_rad) robot_.stand->Send(*decision->stand_rad);
     done = decision->done;
     if (observer.tick) observer.tick(robot_.clock->Now(), *decision);
   }

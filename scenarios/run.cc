@@ -250,6 +250,9 @@ RunReport RunOnHardware(const RunOptions& options, const std::atomic<bool>& stop
 }  // namespace
 
 RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) {
+  if (IsOnStand(options.scenario.task) && (options.robot != RobotKind::kTwin || options.hand))
+    throw InputError("task.behavior", "turn_on_stand: only the twin has a stand, and nobody drives on it",
+                     "merlin run with --robot twin");
   switch (options.robot) {
     case RobotKind::kEmulated:
       return RunEmulated(options, stop);
