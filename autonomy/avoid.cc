@@ -61,6 +61,7 @@ std::optional<double> Avoid::WayUntilTouch_m(const Eigen::Vector2d& point_base, 
 }
 
 std::optional<double> Avoid::FreeWay_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base) {
+  if (std::abs(observation.view_yaw_rad) > config_.aside_max_rad) return 0.0;
   std::optional<double> free_way_m = SeenNow_m(observation, path_base);
   if (last_ && Seconds(observation.stamp - last_->stamp) <= config_.hold_s) {
     const double driven_m = (last_->T_odom_base.inverse() * observation.T_odom_base).translation().norm();

@@ -22,6 +22,7 @@ struct AvoidConfig {
   double hold_s = 0.5;                // [0, 10] an obstacle that drops out of sight is believed this long
   int saturated_min = 30;             // [1, 1e5] saturated pixels straight ahead that mean: something close
   double saturated_half_angle_rad = 0.15;  // [0, 1.6] straight ahead
+  double aside_max_rad = 0.2;         // [0, 1.6] a camera turned farther to a side does not see the way; half its view
 };
 
 template <class Visitor>
@@ -35,6 +36,7 @@ void Visit(Visitor& v, AvoidConfig& c) {
   v("hold_s", c.hold_s, {0.0, 10.0});
   v("saturated_min", c.saturated_min, {1.0, 1e5});
   v("saturated_half_angle_rad", c.saturated_half_angle_rad, {0.0, 1.6});
+  v("aside_max_rad", c.aside_max_rad, {0.0, 1.6});
 }
 
 // What of the car touches first, from base_link, over its collision shapes (boxes, cylinders, spheres; meshes are left out).
@@ -49,7 +51,8 @@ class Avoid {
   Avoid(const Footprint& footprint, const AvoidConfig& config) : footprint_(footprint), config_(config) {}
 
   // Way the car can drive along the path (points of its base_link to be, in the base frame, in order, from the origin
-  // on) until its footprint, turned along the path, touches something. Nothing: no obstacle seen on it. Zero: something is too close to measure.
+  // on) until its footprint, turned along the path, touches something. Nothing: no obstacle seen on it. Zero: something is too close
+  // to measure, or the camera looks aside.
   std::optional<double> FreeWay_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base);
 
   // The fastest speed from which the car, braking as planned, still stands stop_gap_m before the obstacle.

@@ -26,7 +26,7 @@ std::size_t NearestIndex(const std::vector<Eigen::Vector2d>& path, const Eigen::
 
 }  // namespace
 
-std::vector<std::string> BehaviorNames() { return {"follow_corridor"}; }
+std::vector<std::string> BehaviorNames() { return {"follow_corridor", "turn_on_stand"}; }
 
 Pilot::Pilot(const CarDescription& car, const Task& task, const PilotConfig& config)
     : car_(car), task_(task), config_(config), avoid_(FootprintOf(car), config.avoid) {}
@@ -101,6 +101,21 @@ Pilot::Pursuit Pilot::Pursue(const std::vector<Eigen::Vector2d>& path_base) cons
   return pursuit;
 }
 
+void Pilot::Forget() {
+  turn_side_.reset();
+  path_map_.clear();
+  hint_ = {last_yaw_rad_, std::nullopt};
+}
+
+Decision Pilot::TurnOnStand(const Observation& observation) {
+  constexpr double kThere_rad = 1e-3;  // a turntable's reading goes all the way
+  const double yaw_rad = Yaw(observation.T_odom_base), angle_rad = task_.angle_deg * std::numbers::pi / 180.0;
+  stand_turned_rad_ += WrapPi(yaw_rad - stand_yaw_rad_.value_or(yaw_rad));
+  stand_yaw_rad_ = yaw_rad;
+  const bool done = std::abs(stand_turned_rad_ - angle_rad) < kThere_rad;
+  return {Command(0.0, 0.0), done, done ? "is done" : "turns on its stand", angle_rad};
+}
+
 Decision Pilot::Decide(const Observation& observation, const std::optional<Pose>& T_map_base, const Slam& slam) {
   if (!T_map_base) return {Command(0.0, 0.0), false, "waits for its heading"};
   if (!T_map_start_) {
@@ -108,6 +123,7 @@ Decision Pilot::Decide(const Observation& observation, const std::optional<Pose>
     last_yaw_rad_ = Yaw(*T_map_base);
     hint_.yaw_rad = last_yaw_rad_;
   }
+  if (IsOnStand(task_)) return TurnOnStand(observation);
   CountLaps(*T_map_base);
   if (task_.laps > 0 && laps_ >= task_.laps) return {Command(0.0, 0.0), true, "is done"};
   if (slam.lost_frames() > config_.lost_frames_max) return {Command(0.0, 0.0), false, "stands: it does not know where it is"};

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "autonomy/arbitrate.h"
 #include "autonomy/avoid.h"
 #include "autonomy/corridor.h"
+#include "autonomy/energy.h"
 #include "perception/observation.h"
 #include "robot/types/measurements.h"
 #include "slam/slam.h"
@@ -25,6 +27,8 @@ struct PilotConfig {
   int lost_frames_max = 20;          // [1, 1000] frames in a row without registration, then it stands until one fits
   AvoidConfig avoid;
   CorridorConfig corridor;
+  EnergyConfig energy;
+  ArbitrateConfig arbitrate;
 };
 
 template <class Visitor>
@@ -39,18 +43,26 @@ void Visit(Visitor& v, PilotConfig& c) {
   v("lost_frames_max", c.lost_frames_max, {1.0, 1000.0});
   v("avoid", c.avoid);
   v("corridor", c.corridor);
+  v("energy", c.energy);
+  v("arbitrate", c.arbitrate);
 }
 
 struct Task {
-  std::string behavior = "follow_corridor";  // the only one yet
+  std::string behavior = "follow_corridor";  // or turn_on_stand: the car stands on a turntable, which turns
   int laps = 0;                              // [0, 1000] closed rounds after which it stops; 0: drive on
+  double angle_deg = 360.0;                  // [-3600, 3600] that the stand turns, positive to the left
+  double rate_deg_s = 20.0;                  // [0.1, 180] of the stand
 };
 
 template <class Visitor>
 void Visit(Visitor& v, Task& c) {
   v("behavior", c.behavior);
   v("laps", c.laps, {0.0, 1000.0});
+  v("angle_deg", c.angle_deg, {-3600.0, 3600.0});
+  v("rate_deg_s", c.rate_deg_s, {0.1, 180.0});
 }
+
+inline bool IsOnStand(const Task& task) { return task.behavior == "turn_on_stand"; }
 
 // The names a task's behavior may have.
 std::vector<std::string> BehaviorNames();
@@ -59,6 +71,7 @@ struct Decision {
   DriveCommand command;
   bool done = false;        // the task is finished: the command is to stand
   std::string doing;        // "follows the corridor", "turns left", "waits for an obstacle", ...
+  std::optional<double> stand_rad{};  // where the stand is to turn, from its start; none: nothing new
 };
 
 class Pilot {
@@ -66,9 +79,12 @@ class Pilot {
   Pilot(const CarDescription& car, const Task& task, const PilotConfig& config);
   // One decision a depth frame. T_map_base: of this observation, if there is one.
   Decision Decide(const Observation& observation, const std::optional<Pose>& T_map_base, const Slam& slam);
+  // Somebody else has driven: what it meant to drive is old. Its laps still count.
+  void Forget();
 
  private:
   void CountLaps(const Pose& T_map_base);
+  Decision TurnOnStand(const Observation& observation);
   void FollowCorridor(const Pose& T_map_base, const Slam& slam);
   void PlanTurn(const Corridor& corridor, const Pose& T_map_base, double side);
   bool TurnIsOver(const Pose& T_map_base) const;
@@ -87,6 +103,8 @@ class Pilot {
   std::optional<Pose> T_map_start_;
   double last_yaw_rad_ = 0.0, turned_rad_ = 0.0;  // since the start, unwrapped
   int laps_ = 0;
+  std::optional<double> stand_yaw_rad_;           // of the odometry at the last frame
+  double stand_turned_rad_ = 0.0;
   CorridorHint hint_;
   std::vector<Eigen::Vector2d> path_map_;         // what it means to drive, from about the car onwards
   std::optional<double> turn_side_;               // +1 left, -1 right, while it turns

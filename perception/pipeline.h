@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "perception/angle_track.h"
 #include "perception/filter/depth_filter.h"
 #include "perception/fuse.h"
 #include "perception/integration_time.h"
@@ -40,6 +41,8 @@ struct Rig {
   Pose T_base_depth = Pose::Identity();
   std::optional<ColorCameraSheet> color;  // none: no colour
   Pose T_base_color = Pose::Identity();
+  bool pans = false;      // a pan unit turns the cameras: their poses are those while it looks ahead
+  bool on_stand = false;  // the car stands on a turntable: what that turns, the wheels do not know
 };
 
 class Pipeline {
@@ -49,15 +52,21 @@ class Pipeline {
   void Add(const DriveState& state);
   void Add(const CompassReading& reading);
   void Add(ColorFrame frame);
-  // Nothing until wheel odometry has begun.
+  void AddPan(const PanState& state) { pan_.Add(state); }
+  void AddStand(const PanState& state) { stand_.Add(state); }
+  // Nothing until wheel odometry, and pan unit and stand where there are such, have told the first time.
   std::optional<Observation> Process(DepthFrame frame);
 
  private:
+  std::optional<Pose> OdomAt(Time time) const;                                 // T_odom_base, the stand's turn included
+  std::optional<Pose> CameraAt(const Pose& T_base_camera, Time time) const;    // as the pan unit stands
+
   Rig rig_;
   PerceptionConfig config_;
   std::vector<Eigen::Vector3f> rays_;
   Odometry odometry_;
   Heading heading_;
+  AngleTrack pan_, stand_;
   std::optional<ColorFrame> color_;
 };
 

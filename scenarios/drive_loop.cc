@@ -12,11 +12,13 @@ constexpr Duration kStandLimit = std::chrono::seconds(3);
 
 Rig RigOf(const Robot& robot, const CarDescription& car) {
   const DepthCameraInfo& depth = robot.depth->Info();
-  Rig rig{car, depth.sheet, depth.T_base_camera, std::nullopt, Pose::Identity()};
+  Rig rig{.car = car, .depth = depth.sheet, .T_base_depth = depth.T_base_camera, .color = std::nullopt};
   if (robot.color != nullptr) {
     rig.color = robot.color->Info().sheet;
     rig.T_base_color = robot.color->Info().T_base_camera;
   }
+  rig.pans = robot.pan != nullptr && car.pan;
+  rig.on_stand = robot.stand != nullptr;
   return rig;
 }
 
@@ -29,10 +31,31 @@ DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const Percep
       period_(FromSeconds(1.0 / robot.depth->Info().rate_hz)),
       pipeline_(RigOf(robot, car), perception),
       slam_(slam),
-      pilot_(car, task, pilot) {}
+      pilot_(car, task, pilot),
+      energy_(car, pilot.energy),
+      arbiter_(car, pilot.avoid, pilot.arbitrate),
+      metres_per_count_(car.MetresPerCount()) {}
 
-bool DriveLoop::Tick(const LoopObserver& observer) {
-  while (auto state = robot_.drive->Poll()) last_drive_ = robot_.clock->Now(), pipeline_.Add(*state);
+void DriveLoop::Listen(const LoopObserver& observer) {
+  while (auto state = robot_.drive->Poll()) {
+    last_drive_ = robot_.clock->Now();
+    pipeline_.Add(*state);
+    energy_.Update(*state);
+    const double counts = static_cast<double>(state->encoder_counts - status_.state.encoder_counts);
+    if (status_.state.stamp > Time(0) && state->stamp > status_.state.stamp)
+      status_.speed_m_s = counts * metres_per_count_ / Seconds(state->stamp - status_.state.stamp);
+    status_.state = *state;
+  }
+  while (robot_.pan != nullptr) {
+    const auto state = robot_.pan->Poll();
+    if (!state) break;
+    pipeline_.AddPan(*state);
+  }
+  while (robot_.stand != nullptr) {
+    const auto state = robot_.stand->Poll();
+    if (!state) break;
+    pipeline_.AddStand(*state);
+  }
   while (robot_.compass != nullptr) {
     const auto reading = robot_.compass->Poll();
     if (!reading) break;
@@ -44,22 +67,59 @@ bool DriveLoop::Tick(const LoopObserver& observer) {
     if (observer.color) observer.color(*frame);
     pipeline_.Add(std::move(*frame));
   }
-  bool done = false;
+}
+
+std::optional<Decision> DriveLoop::Decide(const LoopObserver& observer, bool forget) {
   while (auto frame = robot_.depth->Poll()) {
     last_depth_ = robot_.clock->Now();
     if (observer.depth) observer.depth(*frame);
     const auto begin = std::chrono::steady_clock::now();
     if (integration_.adapt) AdaptExposure(*frame);
-    const auto observation = pipeline_.Process(std::move(*frame));
+    auto observation = pipeline_.Process(std::move(*frame));
     if (!observation) continue;
     const auto T_map_base = slam_.Update(*observation);
-    const Decision decision = pilot_.Decide(*observation, T_map_base, slam_);
+    if (forget) pilot_.Forget();
+    Decision decision = pilot_.Decide(*observation, T_map_base, slam_);
+    if (energy_.level() == EnergyLevel::kLow) decision.doing += "; battery low";
     stack_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-    robot_.drive->Send(decision.command);
-    done = decision.done;
-    if (observer.tick) observer.tick(robot_.clock->Now(), decision);
+    seen_ = std::move(observation);
+    return decision;
+  }
+  return std::nullopt;
+}
+
+bool DriveLoop::Tick(const LoopObserver& observer) {
+  Listen(observer);
+  bool done = false;
+  while (const auto decision = Decide(observer, false)) {
+    robot_.drive->Send(decision->command);
+    if (robot_.stand != nullptr && decision->stand_rad) robot_.stand->Send(*decision->stand_rad);
+    done = decision->done;
+    if (observer.tick) observer.tick(robot_.clock->Now(), *decision);
   }
   return done;
+}
+
+// What the pilot would do, for as long as that holds: a tick without a frame does not prolong it.
+std::optional<DriveCommand> DriveLoop::Advice(Time now) const {
+  if (!advice_ || energy_.level() == EnergyLevel::kEmpty) return std::nullopt;
+  DriveCommand command = advice_->command;
+  command.valid_for -= now - advised_;
+  return command.valid_for > Duration(0) ? std::optional(command) : std::nullopt;
+}
+
+bool DriveLoop::TickByHand(const LoopObserver& observer, const Hand& hand) {
+  Listen(observer);
+  const Time now = robot_.clock->Now();
+  while (auto decision = Decide(observer, status_.arbitration.driver != Driver::kAutonomy))
+    advice_ = std::move(decision), advised_ = now;
+  status_.wish = hand(now);
+  status_.energy = energy_.level();
+  status_.arbitration = arbiter_.Decide(now, status_.wish, Advice(now), seen_ ? &*seen_ : nullptr);
+  status_.doing = status_.arbitration.driver == Driver::kAutonomy ? advice_->doing : "";
+  robot_.drive->Send(status_.arbitration.command);
+  if (observer.hand) observer.hand(now, status_);
+  return status_.wish.quit;
 }
 
 void DriveLoop::AdaptExposure(const DepthFrame& frame) {
@@ -81,12 +141,13 @@ void DriveLoop::Stand() {
   }
 }
 
-LoopEnd DriveLoop::Run(const std::atomic<bool>& stop, const LoopObserver& observer) {
+LoopEnd DriveLoop::Run(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand) {
   LoopEnd end = LoopEnd::kTimeUp;
   last_depth_ = last_drive_ = robot_.clock->Now();
   for (Time tick = robot_.clock->Now() + period_; robot_.clock->WaitUntil(tick); tick += period_) {
-    if (Tick(observer)) end = LoopEnd::kTaskDone;
+    if (hand ? TickByHand(observer, hand) : Tick(observer)) end = hand ? LoopEnd::kQuit : LoopEnd::kTaskDone;
     else if (stop.load()) end = LoopEnd::kInterrupted;
+    else if (!hand && energy_.level() == EnergyLevel::kEmpty) end = LoopEnd::kBatteryEmpty;
     else if (robot_.clock->Now() - std::min(last_depth_, last_drive_) > kSilent + period_) end = LoopEnd::kDeviceLost;
     else continue;
     Stand();

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "autonomy/arbitrate.h"
+#include "autonomy/energy.h"
 #include "autonomy/pilot.h"
 #include "perception/pipeline.h"
 #include "robot/hal/hal.h"
@@ -13,13 +15,27 @@
 
 namespace merlin {
 
-enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost };
+enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost, kBatteryEmpty, kQuit };
+
+// An operator's hand, asked at every tick.
+using Hand = std::function<ManualWish(Time now)>;
+
+// What an operator wants to know.
+struct HandStatus {
+  Arbitration arbitration;
+  ManualWish wish;
+  double speed_m_s = 0.0;     // by the encoder
+  DriveState state;           // the last one
+  EnergyLevel energy = EnergyLevel::kEnough;
+  std::string doing;          // the pilot, if it drives
+};
 
 // What a run may look at from outside, each called in the loop's thread. Any may be empty.
 struct LoopObserver {
   std::function<void(const DepthFrame&)> depth;
   std::function<void(const ColorFrame&)> color;
   std::function<void(Time now, const Decision&)> tick;  // after every decision
+  std::function<void(Time now, const HandStatus&)> hand{};  // at every tick that has a hand
 };
 
 class DriveLoop {
@@ -27,15 +43,23 @@ class DriveLoop {
   DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception, const SlamConfig& slam,
             const Task& task, const PilotConfig& pilot);
 
-  // Until the task is done, the clock ends, stop is set, or the depth camera or the drive is silent for a second. Then, the
-  // clock permitting, brakes and waits until the car stands.
-  LoopEnd Run(const std::atomic<bool>& stop, const LoopObserver& observer);
+  // Until the task is done, the clock ends, stop is set, the battery is empty (autonomy/energy.h), or the depth camera or
+  // the drive is silent for a second. Then, the clock permitting, brakes and waits until the car stands.
+  // With a hand the pilot only advises the arbiter (autonomy/arbitrate.h), its task has no end, and an empty battery stops
+  // the pilot alone: the operator may bring the car home.
+  LoopEnd Run(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand = {});
 
   const Slam& slam() const { return slam_; }
+  const Energy& energy() const { return energy_; }
   const std::vector<double>& stack_ms() const { return stack_ms_; }  // one a depth frame: filter to decision
 
  private:
+  void Listen(const LoopObserver& observer);
+  // On the next depth frame, if there is one.
+  std::optional<Decision> Decide(const LoopObserver& observer, bool forget);
   bool Tick(const LoopObserver& observer);  // true: the task is done
+  bool TickByHand(const LoopObserver& observer, const Hand& hand);  // true: the operator quits
+  std::optional<DriveCommand> Advice(Time now) const;
   void Stand();
   void AdaptExposure(const DepthFrame& frame);
 
@@ -45,6 +69,13 @@ class DriveLoop {
   Pipeline pipeline_;
   Slam slam_;
   Pilot pilot_;
+  Energy energy_;
+  Arbiter arbiter_;
+  std::optional<Observation> seen_;     // the newest
+  std::optional<Decision> advice_;      // the pilot's newest, ...
+  Time advised_{0};                     // ... and when it came
+  HandStatus status_;
+  double metres_per_count_;
   Time last_depth_{0}, last_drive_{0};
   std::vector<double> stack_ms_;
 };

@@ -88,7 +88,12 @@ class Session {
     const LoopEnd end = loop.Run(
         stop_, {.depth = [&](const DepthFrame& frame) { evidence.Add(frame), keep(frame.stamp); },
                 .color = [&](const ColorFrame& frame) { evidence.Add(frame); },
-                .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop.slam().path_m(), decision.doing); }});
+                .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop.slam().path_m(), decision.doing); },
+                .hand = [&](Time now, const HandStatus& status) {
+                  if (options_.hand_status) options_.hand_status(now, status);
+                  pacer.Tick(now, loop.slam().path_m(), Name(status.arbitration.driver));
+                }},
+        options_.hand);
     const double wall_s = SecondsSince(first_step);
 
     RunReport report{.result = JudgeRun(options_.name, scenario, robot, true_world(), loop, evidence, folder),
@@ -102,9 +107,12 @@ class Session {
     result.metrics.peak_rss_mb = PeakRss_mb();
     result.checks = Evaluate(scenario.checks, result.metrics, options_.name);
     if (end == LoopEnd::kDeviceLost) result.fault = "the depth camera or the drive fell silent for a second";
+    if (end == LoopEnd::kBatteryEmpty)
+      result.fault = fmt::format("the battery is empty: {:.2f} V without the motor, and the car stops below {:.2f} V",
+                                 loop.energy().rest_v().value_or(0.0), loop.energy().stop_v());
     result.verdict = end == LoopEnd::kInterrupted ? Verdict::kInterrupted
-                     : end == LoopEnd::kDeviceLost ? Verdict::kFail
-                                                   : Judge(result.checks);
+                     : !result.fault.empty()     ? Verdict::kFail
+                                                 : Judge(result.checks);
     folder.Write("junit.xml", ToJUnit(result));
     folder.Finish(ToJson(result));
     return report;
@@ -242,6 +250,9 @@ RunReport RunOnHardware(const RunOptions& options, const std::atomic<bool>& stop
 }  // namespace
 
 RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) {
+  if (IsOnStand(options.scenario.task) && (options.robot != RobotKind::kTwin || options.hand))
+    throw InputError("task.behavior", "turn_on_stand: only the twin has a stand, and nobody drives on it",
+                     "merlin run with --robot twin");
   switch (options.robot) {
     case RobotKind::kEmulated:
       return RunEmulated(options, stop);

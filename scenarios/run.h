@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "scenarios/drive_loop.h"
 #include "scenarios/judge/result.h"
 #include "scenarios/scenario.h"
 #include "sim/renderer.h"
@@ -25,6 +26,8 @@ struct RunOptions {
   int threads = 2;
   double pace = 0.0;                           // simulated over wall time not to be exceeded; 0: as fast as it goes
   std::function<void(Time now, double distance_m, const std::string& doing)> progress;  // a few times a second
+  Hand hand{};                                 // of an operator who drives; empty: the pilot does
+  std::function<void(Time now, const HandStatus&)> hand_status{};  // at every tick that has a hand
 };
 
 struct RunReport {

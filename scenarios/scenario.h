@@ -33,6 +33,7 @@ struct CarChoice {
   std::string model = "merlin";  // models/<name>/<name>.urdf, or a path
   CarStart start;
   sim::DrivetrainConfig drivetrain;  // of the twin: how the true car differs from its model
+  bool pan = false;                  // the unit that turns the cameras moves (pan_joint of the model); false: it is held ahead
   std::string calibration;           // what the stack believes: a file of `merlin calibrate odometry`; empty: the model
 };
 
@@ -41,6 +42,7 @@ void Visit(Visitor& v, CarChoice& c) {
   v("model", c.model);
   v("start", c.start);
   v("drivetrain", c.drivetrain);
+  v("pan", c.pan);
   v("calibration", c.calibration);
 }
 

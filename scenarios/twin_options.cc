@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
 #include <ranges>
 
 #include "robot/description/description.h"
@@ -35,6 +36,11 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
                 ObstaclesOf(scenario), scenario.curtain == "closed"};
   twin.materials = sim::ReadMaterials(Home() / "models/materials.yaml");
   twin.world.drivetrain = scenario.car.drivetrain;
+  if (scenario.car.pan) {
+    if (!twin.world.car.pan) throw InputError("car.pan", "the car '" + scenario.car.model + "' has no joint that turns its cameras");
+    twin.world.car.pan->moves = true;
+  }
+  if (IsOnStand(scenario.task)) twin.world.stand_rate_rad_s = scenario.task.rate_deg_s * std::numbers::pi / 180.0;
   twin.seed = scenario.seed;
   const std::filesystem::path depth_file = DepthCameraFile(sensors.depth.camera);
   twin.depth = {ReadDepthCameraSheet(depth_file), ReadDepthCameraErrors(depth_file), SettingsOf(sensors.depth),

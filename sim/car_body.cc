@@ -10,6 +10,8 @@
 namespace merlin::sim::car_body {
 namespace {
 
+constexpr double kPanInertia_kg_m2 = 2e-3;  // of the servo behind its gear; guess, as the steering servo's
+
 void SetPose(const Pose& pose, double pos[3], double quat[4]) {
   const Eigen::Quaterniond q(pose.linear());
   Eigen::Vector3d::Map(pos) = pose.translation();
@@ -29,9 +31,17 @@ void SetInertial(const CarLink& link, mjsBody* body) {
 
 // A joint moves where the car drives or steers; other joints are held at 0. How far the knuckles turn is their
 // linkage's business (see sim/drivetrain.h).
+bool IsPan(const CarDescription& car, std::size_t index) {
+  return car.pan && car.pan->moves && car.pan->link == index;
+}
+
+bool Moves(const CarDescription& car, std::size_t index) {
+  return FindWheel(car, index) != nullptr || std::ranges::find(car.knuckles, index) != car.knuckles.end() ||
+         IsPan(car, index);
+}
+
 void AddJoint(const CarDescription& car, std::size_t index, const mjsDefault* plain, mjsBody* body) {
-  const bool wheel = FindWheel(car, index) != nullptr;
-  if (!wheel && std::ranges::find(car.knuckles, index) == car.knuckles.end()) return;
+  if (!Moves(car, index)) return;
   mjsJoint* joint = mjs_addJoint(body, plain);
   SetName(joint->element, car.links[index].joint_name);
   joint->type = mjJNT_HINGE;
@@ -39,7 +49,9 @@ void AddJoint(const CarDescription& car, std::size_t index, const mjsDefault* pl
   joint->limited = mjLIMITED_FALSE;
   // A quarter of the rotor for each wheel: behind ideal differentials the motor turns with the mean of the four, and
   // MuJoCo takes only the diagonal of an inertia set on the motor or tendon.
-  if (wheel) joint->armature = car.drivetrain.rotor_inertia_kg_m2 * car.drivetrain.gear * car.drivetrain.gear / 4.0;
+  if (FindWheel(car, index) != nullptr)
+    joint->armature = car.drivetrain.rotor_inertia_kg_m2 * car.drivetrain.gear * car.drivetrain.gear / 4.0;
+  if (IsPan(car, index)) joint->armature = kPanInertia_kg_m2;
 }
 
 void SetMaterial(mjSpec* spec, const CarShape& shape, const mjsDefault* plain, mjsGeom* geom) {
@@ -162,7 +174,7 @@ void AddTo(mjSpec* spec, const CarDescription& car, const Pose& T_world_base) {
       AddJoint(car, i, plain.get(), body);
     }
     Carrier carrier{body, Pose::Identity()};
-    if (link.joint == CarLink::Joint::kFixed && !link.parent.empty()) {
+    if (!Moves(car, i) && !link.parent.empty()) {
       carrier = carriers.at(link.parent);
       carrier.T_carrier_link = carrier.T_carrier_link * link.T_parent_link;
     }

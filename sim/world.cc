@@ -60,6 +60,8 @@ World::World(const WorldOptions& options) {
   SetOptions(spec.get());
   car_body::AddTo(spec.get(), true_car, options.T_world_start);
   drivetrain::AddTo(spec.get(), true_car);
+  const bool pans = true_car.pan && true_car.pan->moves;
+  if (pans) PanServo::AddTo(spec.get(), true_car);
   AddObstacles(spec.get(), options.obstacles);
   model_.reset(mj_compile(spec.get(), nullptr));
   if (!model_) throw RoomError(options.room, "the room with the car in it does not compile", mjs_getError(spec.get()));
@@ -80,6 +82,8 @@ World::World(const WorldOptions& options) {
                          fmt::format("a position within {:g} m", kFarthest_m), fmt::format("{:g}", data_->geom_xpos[3 * geom + axis]));
   RefuseStartInContact(options);
   drive_ = DriveController(model_.get(), options.car, drivetrain, options.seed);
+  if (pans) pan_ = PanServo(model_.get(), options.car);
+  if (options.stand_rate_rad_s) stand_ = Turntable(options.car, T_world_base(), *options.stand_rate_rad_s);
 }
 
 World::~World() = default;
@@ -123,7 +127,9 @@ void World::ReadNumerics(const std::string& room) {
 
 void World::NameParts(const CarDescription& car, const std::vector<Obstacle>& obstacles) {
   const auto body_id = [this](const std::string& name) { return mj_name2id(model_.get(), mjOBJ_BODY, name.c_str()); };
+  car_ = car;
   base_body_ = body_id(car.links[0].name);
+  if (car.pan && car.pan->moves) pan_body_ = body_id(car.links[car.pan->link].name);
   wheel_radius_m_ = car.wheel_radius_m;
   std::vector<bool> wheel_bodies(model_->nbody, false);
   for (const CarWheel& wheel : car.wheels) wheel_bodies[body_id(car.links[wheel.link].name)] = true;
@@ -163,7 +169,8 @@ void World::PutOnFloor(const WorldOptions& options) {
   if (!found)
     throw InputError(room, "the car does not start on the floor", "a geom named floor* below the start",
                      fmt::format("nothing at x {} m, y {} m", start.x(), start.y()));
-  data_->qpos[model_->jnt_qposadr[model_->body_jntadr[base_body_]] + 2] = start.z() + kFloorSearch_m - nearest_m;
+  const double lift_m = options.stand_rate_rad_s ? kStandHeight_m : 0.0;
+  data_->qpos[model_->jnt_qposadr[model_->body_jntadr[base_body_]] + 2] = start.z() + kFloorSearch_m - nearest_m + lift_m;
 }
 
 void World::RefuseStartInContact(const WorldOptions& options) const {
@@ -187,15 +194,32 @@ void World::RefuseStartInContact(const WorldOptions& options) const {
 
 void World::Step() {
   drive_.Apply(model_.get(), data_.get(), Now());
+  if (pan_) pan_->Apply(data_.get());
   // mj_step in two halves, the first of the next step already taken: what depends on position and velocity stays
   // current.
   mj_step2(model_.get(), data_.get());
+  if (stand_) TurnOnStand();
   mj_step1(model_.get(), data_.get());
   for (int i = 0; i < mjNWARNING; ++i)
     if (data_->warning[i].number > 0)
       throw std::runtime_error(
           fmt::format("MuJoCo stopped at {:.3f} s: {}", data_->time, mju_warningText(i, data_->warning[i].lastinfo)));
   drive_.Follow(model_.get(), data_.get());  // only a sound state has counts
+}
+
+// The stand has the car where it wants it.
+void World::TurnOnStand() {
+  stand_->Step(kStep);
+  const Pose T_world_base = stand_->T_world_base();
+  const Eigen::Quaterniond q(T_world_base.linear());
+  const Eigen::Vector3d axle = T_world_base.linear() * car_.T_base_stand().translation();  // from the base to the axis
+  const Eigen::Vector3d turn(0.0, 0.0, stand_->speed_rad_s());
+  const int joint = model_->body_jntadr[base_body_];
+  mjtNum *position = data_->qpos + model_->jnt_qposadr[joint], *velocity = data_->qvel + model_->jnt_dofadr[joint];
+  Eigen::Vector3d::Map(position) = T_world_base.translation();
+  Eigen::Vector4d::Map(position + 3) = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
+  Eigen::Vector3d::Map(velocity) = turn.cross(-axle);
+  Eigen::Vector3d::Map(velocity + 3) = turn;  // in the body's axes; its z is the world's
 }
 
 Time World::Now() const { return std::llround(data_->time / Seconds(kStep)) * kStep; }
@@ -212,6 +236,20 @@ BodyMotion World::BaseMotion() const {
   mjtNum velocity[6];  // angular, linear
   mj_objectVelocity(model_.get(), data_.get(), mjOBJ_XBODY, base_body_, velocity, 0);
   return {T_world_base(), {velocity[3], velocity[4], velocity[5]}, {velocity[0], velocity[1], velocity[2]}};
+}
+
+BodyMotion World::CameraMotion(const Pose& T_base_camera) const {
+  if (!pan_) return BaseMotion().Of(T_base_camera);
+  const BodyMotion base = BaseMotion();
+  BodyMotion camera = base.Of(car_.pan->Turned(T_base_camera, pan_->Read_rad(data_.get())));
+  mjtNum velocity[6];  // angular, linear
+  mj_objectVelocity(model_.get(), data_.get(), mjOBJ_XBODY, pan_body_, velocity, 0);
+  const Eigen::Vector3d turn(velocity[0], velocity[1], velocity[2]);
+  const Eigen::Vector3d pivot = base.T_world_body * car_.pan->T_base_pan.translation();
+  camera.velocity_m_s = Eigen::Vector3d(velocity[3], velocity[4], velocity[5]) +
+                        turn.cross(camera.T_world_body.translation() - pivot);
+  camera.angular_velocity_rad_s = turn;
+  return camera;
 }
 
 double World::Speed_m_s() const {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@
 #include "sim/drivetrain_config.h"
 #include "sim/materials.h"
 #include "sim/motion.h"
+#include "sim/pan_servo.h"
+#include "sim/turntable.h"
 
 namespace merlin::sim {
 
@@ -36,6 +39,7 @@ struct WorldOptions {
   DrivetrainConfig drivetrain{};  // how the true car and its drive differ from the description
   Materials materials{};          // of the floors: their grip
   std::uint64_t seed = 1;
+  std::optional<double> stand_rate_rad_s{};  // the car stands on a turntable that turns as fast as this, > 0
 };
 
 // Two geoms that touch, the first of them the car's. A wheel on a geom named "floor*" is no contact.
@@ -64,6 +68,8 @@ class World {
   Time Now() const;
   Pose T_world_base() const;
   BodyMotion BaseMotion() const;
+  // Of a camera that sits there while the pan unit (if it moves) looks ahead.
+  BodyMotion CameraMotion(const Pose& T_base_camera) const;
   double Speed_m_s() const;  // of the rear axle's middle along x, signed
   std::vector<Touch> CarTouches() const;
   bool IsCarGeom(int geom_id) const;
@@ -77,6 +83,11 @@ class World {
 
   DriveController& drive() { return drive_; }
   const DriveController& drive() const { return drive_; }
+
+  // Null: the car has none that moves; it stands on no turntable.
+  PanServo* pan() { return pan_ ? &*pan_ : nullptr; }
+  const PanServo* pan() const { return pan_ ? &*pan_ : nullptr; }
+  Turntable* stand() { return stand_ ? &*stand_ : nullptr; }
 
   // The outer outline of the room ("plan_xy_m"), empty if the room gives none; yaw of magnetic north.
   const std::vector<Eigen::Vector2d>& plan_xy_m() const { return plan_xy_m_; }
@@ -99,8 +110,13 @@ class World {
 
   std::unique_ptr<mjModel, void (*)(mjModel*)> model_{nullptr, mj_deleteModel};
   std::unique_ptr<mjData, void (*)(mjData*)> data_{nullptr, mj_deleteData};
+  void TurnOnStand();
+
   DriveController drive_;
-  int base_body_ = -1;
+  std::optional<PanServo> pan_;
+  std::optional<Turntable> stand_;
+  CarDescription car_;
+  int base_body_ = -1, pan_body_ = -1;
   double wheel_radius_m_ = 0.0;
   std::vector<bool> is_car_, is_wheel_, is_floor_;  // by geom
   std::map<std::string, int> obstacle_bodies_;

@@ -210,6 +210,7 @@ void PutBaseAboveRoot(const Pose& T_base_root, CarDescription& car) {
   car.links.insert(car.links.begin(), base);
   for (CarWheel& wheel : car.wheels) ++wheel.link;
   for (std::size_t& knuckle : car.knuckles) ++knuckle;
+  if (car.pan) ++car.pan->link;
 }
 
 // Wheels as on a car: two axles, each symmetric about the base's x axis, all on the ground.
@@ -242,6 +243,13 @@ double MiddleAngle_rad(const CarDescription& car, double wheel_rad, double side)
   return std::atan2(tangent, 1.0 + 0.5 * side * car.steering_track_m / car.wheelbase_m * tangent);
 }
 
+// The same joint, counted the other way.
+void TurnRound(CarLink& link) {
+  link.axis = -link.axis;
+  std::swap(link.joint_min_rad, link.joint_max_rad);
+  link.joint_min_rad = -link.joint_min_rad, link.joint_max_rad = -link.joint_max_rad;
+}
+
 void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_root, CarDescription& car) {
   std::array<Eigen::Vector3d, 2> pivots;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -250,11 +258,7 @@ void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_roo
     if (std::abs(axis.z()) < kParallel)
       throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': axis", link.joint_name),
                        "an upright one");
-    if (axis.z() < 0.0) {
-      link.axis = -link.axis;
-      std::swap(link.joint_min_rad, link.joint_max_rad);
-      link.joint_min_rad = -link.joint_min_rad, link.joint_max_rad = -link.joint_max_rad;
-    }
+    if (axis.z() < 0.0) TurnRound(link);
     const Eigen::Vector3d joint = T_base_root * tree.T_root(car.knuckles[i]).translation();
     pivots[i] = joint + axis * (car.wheel_radius_m - joint.z()) / axis.z();
     if (!(std::abs(pivots[i].x() - car.wheelbase_m) <= kTrailMax * car.wheelbase_m))
@@ -278,6 +282,29 @@ void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_roo
     for (const double limit_rad : {link.joint_min_rad, link.joint_max_rad})
       car.steering_max_rad = std::min(car.steering_max_rad, std::abs(MiddleAngle_rad(car, limit_rad, kSides[i])));
   }
+}
+
+// The axis of the joint that turns the cameras: upright, positive to the left. Its link hangs on the base.
+void DerivePan(const UrdfSource& source, const CarMapping& mapping, Tree& tree, const Pose& T_base_root,
+               CarDescription& car) {
+  const bool named = !mapping.pan_joint.where.empty();
+  if (!named && std::ranges::find(car.links, mapping.pan_joint.name, &CarLink::joint_name) == car.links.end()) return;
+  const std::size_t index = tree.LinkBehind(mapping.pan_joint);
+  CarLink& link = tree.Link(index);
+  const std::string where = source.Where(link.joint_name), what = fmt::format("joint '{}'", link.joint_name);
+  if (link.joint != CarLink::Joint::kRevolute) throw InputError(where, what + " turns the cameras", "type revolute");
+  const Eigen::Vector3d axis = T_base_root.linear() * tree.AxisInRoot(index);
+  if (std::abs(axis.z()) < kParallel) throw InputError(where, what + ": axis", "an upright one");
+  if (axis.z() < 0.0) TurnRound(link);
+  if (!(link.joint_min_rad <= 0.0 && link.joint_max_rad >= 0.0 && link.joint_speed_max_rad_s > 0.0))
+    throw InputError(where, what + ": limits", "lower <= 0 <= upper, and a velocity above 0");
+  for (const RoleName& camera : {mapping.depth_camera, mapping.color_camera})
+    if (!tree.IsBelow(tree.LinkOf(camera), index))
+      throw InputError(where, what + " turns the cameras", fmt::format("'{}' below it", camera.name));
+  const Eigen::Vector3d pivot = T_base_root * tree.T_root(index).translation();
+  car.pan = CarPan{.link = index,
+                   .T_base_pan = AtAxle(pivot, axis.z() < 0.0 ? Eigen::Vector3d(-axis) : axis),
+                   .slew_rad_s = link.joint_speed_max_rad_s};
 }
 
 // A camera's optical frame in the link that its role names: x right, y down, z ahead in x ahead, y left, z up.
@@ -318,6 +345,7 @@ void DeriveGeometry(const UrdfSource& source, const CarMapping& mapping, CarDesc
   car.T_base_depth = frame(mapping.depth_camera) * OpticalIn(mapping.depth_camera);
   car.T_base_color = frame(mapping.color_camera) * OpticalIn(mapping.color_camera);
   car.T_base_compass = frame(mapping.compass);
+  DerivePan(source, mapping, tree, T_base_root, car);
   if (!T_base_root.matrix().isIdentity(0.0)) PutBaseAboveRoot(T_base_root, car);
 }
 

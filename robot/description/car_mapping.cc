@@ -108,6 +108,7 @@ CarMapping ReadMapping(const std::filesystem::path& urdf) {
   ReadCamera(reader, "depth_camera", mapping.depth_camera);
   ReadCamera(reader, "color_camera", mapping.color_camera);
   reader.Name("compass_frame", mapping.compass);
+  reader.Name("pan_joint", mapping.pan_joint);
   mapping.wheel_radius_m = reader.Positive("wheel_radius_m");
   mapping.wheel_width_m = reader.Positive("wheel_width_m");
   const YAML::Node drivetrain = reader.Find("drivetrain");

@@ -5,6 +5,7 @@
 //   depth_camera_optical_frame: tof_lens    # a link with z ahead, x right, y down; or
 //   color_camera_frame: webcam              # ... without "optical": x ahead, y left, z up
 //   compass_frame: imu_link
+//   pan_joint: neck                         # optional: turns both cameras; revolute, upright
 //   wheel_radius_m: 0.1                     # optional, and wheel_width_m: where the wheels' shapes do not say it
 //   drivetrain: {gear: 10, ...}             # as the element <drivetrain> of models/merlin/merlin.urdf
 //
@@ -39,6 +40,7 @@ struct CarMapping {
   RoleName depth_camera{"depth_camera_optical_frame", "depth_camera_optical_frame", ""};
   RoleName color_camera{"color_camera_optical_frame", "color_camera_optical_frame", ""};
   RoleName compass{"compass_frame", "compass_frame", ""};
+  RoleName pan_joint{"pan_joint", "pan_joint", ""};  // a car without it has fixed cameras
   std::optional<double> wheel_radius_m, wheel_width_m;
   std::optional<Drivetrain> drivetrain;
 };

@@ -113,6 +113,7 @@ void ReadJoint(const UrdfSource& source, const urdf::Joint& joint, CarLink& link
       link.joint = CarLink::Joint::kRevolute;
       link.joint_min_rad = joint.limits->lower;
       link.joint_max_rad = joint.limits->upper;
+      link.joint_speed_max_rad_s = joint.limits->velocity;
       if (!(link.joint_min_rad < link.joint_max_rad))
         throw InputError(source.Where(joint.name), fmt::format("joint '{}': limits", joint.name), "lower < upper");
       break;

@@ -1,22 +1,20 @@
-// A unit that turns the cameras about the vertical. Optional: MERLIN's cameras are fixed.
+// Something that turns about the vertical: the servo under the cameras (0 to 180 deg at its horn, 90 ahead: here -pi/2
+// to pi/2, 0 ahead), or a stand that turns the whole car, without end. Optional: MERLIN's cameras are fixed.
 #pragma once
 
 #include <optional>
 
 #include "robot/hal/device_status.h"
-#include "robot/types/time.h"
+#include "robot/types/measurements.h"
 
 namespace merlin {
-
-struct PanState {
-  Time stamp{0};
-  double angle_rad = 0.0;  // counter-clockwise seen from above, 0: straight ahead
-};
 
 class PanUnit {
  public:
   virtual ~PanUnit() = default;
+  // Where it is to go, at its own speed; clamped to its range. Holds without end; not finite: ignored.
   virtual void Send(double angle_rad) = 0;
+  // The oldest state not yet handed out, if any; each once, in order of stamps.
   virtual std::optional<PanState> Poll() = 0;
   virtual DeviceStatus Status() const = 0;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,7 +50,7 @@ class TwinDepth final : public DepthCamera {
     now_ = world.Now();
     if (!schedule_.Due(now_)) return;
     auto bodies = sim::MotionsOf(world.model(), world.data());
-    const sim::BodyMotion camera = world.BaseMotion().Of(info_.T_base_camera);
+    const sim::BodyMotion camera = world.CameraMotion(info_.T_base_camera);
     // Nothing leaves before its last sub-frame is over.
     const Time out = now_ + FromSeconds(std::max(info_.sheet.latency_s, 0.5 * info_.sheet.ExposureSpan_s(settings_)));
     outbox_.Put(now_, out, worker_.Do([this, bodies = std::move(bodies), camera, settings = settings_, stamp = now_,
@@ -104,7 +105,7 @@ class TwinColor final : public ColorCamera {
   void Sample(const sim::World& world) {
     now_ = world.Now();
     if (!schedule_.Due(now_)) return;
-    auto shot = camera_->Take(world.model(), world.data(), world.BaseMotion().Of(info_.T_base_camera));
+    auto shot = camera_->Take(world.model(), world.data(), world.CameraMotion(info_.T_base_camera));
     outbox_.Put(now_, worker_.Do([this, shot, settings = settings_, stamp = now_, index = index_++] {
       return camera_->Expose(*shot, settings, stamp, index);
     }));
@@ -169,6 +170,27 @@ class TwinDrive final : public Drive {
   Outbox<DriveState> outbox_{Duration(0)};
 };
 
+// The pan unit, or the stand.
+class TwinTurn final : public PanUnit {
+ public:
+  TwinTurn(const sim::World& world, double rate_hz, std::function<void(double)> send, std::function<double()> read)
+      : world_(world), send_(std::move(send)), read_(std::move(read)), schedule_(rate_hz) {}
+
+  void Sample() {
+    if (schedule_.Due(world_.Now())) outbox_.Put(world_.Now(), PanState{world_.Now(), read_()});
+  }
+  void Send(double angle_rad) override { send_(angle_rad); }
+  std::optional<PanState> Poll() override { return outbox_.Take(world_.Now()); }
+  DeviceStatus Status() const override { return outbox_.status(); }
+
+ private:
+  const sim::World& world_;
+  std::function<void(double)> send_;
+  std::function<double()> read_;
+  Schedule schedule_;
+  Outbox<PanState> outbox_{Duration(0)};
+};
+
 // The world shares the seed and the materials.
 sim::WorldOptions WorldOf(const TwinOptions& options) {
   sim::WorldOptions world = options.world;
@@ -186,6 +208,12 @@ struct Twin::Impl final : public Clock {
     // With two threads the cameras share one beside the caller's.
     if (options.color) color.emplace(options, world, options.threads > 2 ? color_worker : depth_worker);
     if (options.compass) compass.emplace(options);
+    if (world.pan() != nullptr)
+      pan.emplace(world, options.drive_rate_hz, [this](double angle_rad) { world.pan()->Send(angle_rad); },
+                  [this] { return world.pan()->Read_rad(world.data()); });
+    if (world.stand() != nullptr)
+      stand.emplace(world, options.drive_rate_hz, [this](double angle_rad) { world.stand()->Send(angle_rad); },
+                    [this] { return world.stand()->angle_rad(); });
     Sample();
   }
 
@@ -194,6 +222,8 @@ struct Twin::Impl final : public Clock {
     if (color) color->Sample(world);
     if (compass) compass->Sample(world);
     drive.Sample();
+    if (pan) pan->Sample();
+    if (stand) stand->Sample();
   }
 
   Time Now() const override { return world.Now(); }
@@ -214,6 +244,7 @@ struct Twin::Impl final : public Clock {
   std::optional<TwinColor> color;
   std::optional<TwinCompass> compass;
   TwinDrive drive;
+  std::optional<TwinTurn> pan, stand;
   std::function<void(sim::World&)> on_step;
   std::string no_gl;
 };
@@ -233,7 +264,9 @@ Robot Twin::robot() {
           .depth = &impl_->depth,
           .color = impl_->color ? &*impl_->color : nullptr,
           .compass = impl_->compass ? &*impl_->compass : nullptr,
-          .drive = &impl_->drive};
+          .drive = &impl_->drive,
+          .pan = impl_->pan ? &*impl_->pan : nullptr,
+          .stand = impl_->stand ? &*impl_->stand : nullptr};
 }
 sim::World& Twin::world() { return impl_->world; }
 const sim::World& Twin::world() const { return impl_->world; }

@@ -43,6 +43,7 @@ struct CarLink {
   Pose T_parent_link = Pose::Identity();       // at joint angle 0
   Eigen::Vector3d axis{1, 0, 0};               // of the joint, in the link's frame
   double joint_min_rad = 0.0, joint_max_rad = 0.0;  // of a revolute joint
+  double joint_speed_max_rad_s = 0.0;               // of a revolute joint
   double mass_kg = 0.0;                        // 0: a frame only
   Pose T_link_inertial = Pose::Identity();
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  // about the inertial frame
@@ -70,6 +71,19 @@ struct CarWheel {
   double width_m = 0.0;                        // of the tyre
 };
 
+// What turns both cameras about the vertical, where a car has it.
+struct CarPan {
+  std::size_t link = 0;                    // its place in links; the cameras hang below it
+  Pose T_base_pan = Pose::Identity();      // at angle 0, z up along the axis
+  double slew_rad_s = 0.0;
+  bool moves = false;                      // else it is held ahead, as MERLIN's cameras are
+
+  // The pose of a camera, given the one at angle 0 (ahead); positive to the left.
+  Pose Turned(const Pose& T_base_camera, double angle_rad) const {
+    return T_base_pan * FromXyYaw(0.0, 0.0, angle_rad) * T_base_pan.inverse() * T_base_camera;
+  }
+};
+
 // The car's parts go by their roles here; no user needs to know how its URDF calls them. Joints without a role do not
 // move.
 struct CarDescription {
@@ -77,6 +91,7 @@ struct CarDescription {
   std::vector<CarLink> links;  // parents before children; [0] is the base: on the ground below the rear axle's middle
   std::array<CarWheel, 4> wheels{};        // front left, front right, rear left, rear right
   std::array<std::size_t, 2> knuckles{};   // places in links: what steers the front wheels, left, right; positive to the left
+  std::optional<CarPan> pan;               // none: the cameras are fixed
   // Derived from the links, so that they cannot disagree with them:
   double wheelbase_m = 0.0;
   double track_m = 0.0;           // between the wheels' middles, mean of front and rear
@@ -85,9 +100,13 @@ struct CarDescription {
   double steering_max_rad = 0.0;     // of the virtual wheel midway between the front ones, as the knuckles' limits allow
   double steering_offset_rad = 0.0;  // of the wheels from what the servo reports; only a calibration knows it
   Drivetrain drivetrain;
-  Pose T_base_depth = Pose::Identity();  // optical frames
+  Pose T_base_depth = Pose::Identity();  // optical frames, looking ahead
   Pose T_base_color = Pose::Identity();
   Pose T_base_compass = Pose::Identity();
+
+  // Of a turntable the car stands on: through the base's origin, so that a turn moves no true pose from its place. (On a
+  // small circle the judge would take the noise of the path for a turn of the map.)
+  Pose T_base_stand() const { return Pose::Identity(); }
 
   double MetresPerCount() const {  // of the four-wheel mean's path
     return 2.0 * std::numbers::pi * wheel_radius_m / (drivetrain.gear * drivetrain.encoder_counts_per_motor_turn);

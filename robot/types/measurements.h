@@ -33,4 +33,10 @@ struct DriveState {
   bool expired = false;             // the last command has expired: the motor is braked
 };
 
+// Of what turns the cameras or the whole car.
+struct PanState {
+  Time stamp{0};
+  double angle_rad = 0.0;  // counter-clockwise seen from above, 0: straight ahead
+};
+
 }  // namespace merlin

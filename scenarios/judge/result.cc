@@ -70,6 +70,7 @@ std::string ToJson(const RunResult& result) {
   json["scenario"] = result.scenario;
   json["seed"] = result.seed;
   json["verdict"] = Name(result.verdict);
+  if (!result.fault.empty()) json["fault"] = result.fault;
   json["checks"] = std::move(checks);
   json["metrics"] = std::move(metrics);
   json["hashes"]["state"] = ToJsonValue(result.hashes.state);

@@ -21,7 +21,7 @@ struct RunResult {
   std::string scenario{};
   std::uint64_t seed = 0;
   Verdict verdict = Verdict::kFail;
-  std::string fault{};  // what ended the run before its time, but not an interruption: a lost device; else empty
+  std::string fault{};  // what ended the run before its time, but not an interruption: a lost device, an empty battery; else empty
   std::vector<Check> checks{};
   Metrics metrics{};
   Hashes hashes{};
@@ -32,7 +32,7 @@ struct RunResult {
 std::string ToJson(const RunResult& result);
 
 // The text of junit.xml: one test case a check, and one named "run", in error where the run was
-// interrupted or lost a device.
+// interrupted or ended by a fault.
 std::string ToJUnit(const RunResult& result);
 
 }  // namespace merlin

@@ -102,5 +102,19 @@ TEST(Footprint, ReachesToTheFarthestCollisionShapeInTheBaseFrame) {
   EXPECT_NEAR(FootprintOf(car).half_width_m, 0.15, 1e-12);
 }
 
+TEST(Avoid, SeesNoFreeWayWhereTheCameraLooksAside) {
+  Avoid avoid({.front_m = 0.45, .half_width_m = 0.15}, {});
+  const std::vector<Eigen::Vector2d> ahead{{0.0, 0.0}, {4.0, 0.0}};
+  Observation observation;
+  for (const double yaw_rad : {0.0, 0.2, -0.2}) {
+    observation.view_yaw_rad = yaw_rad;
+    EXPECT_FALSE(avoid.FreeWay_m(observation, ahead)) << yaw_rad;
+  }
+  for (const double yaw_rad : {0.21, -0.21, 1.5}) {
+    observation.view_yaw_rad = yaw_rad;
+    EXPECT_EQ(avoid.FreeWay_m(observation, ahead), 0.0) << yaw_rad;
+  }
+}
+
 }  // namespace
 }  // namespace merlin

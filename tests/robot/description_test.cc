@@ -209,6 +209,36 @@ TEST_F(Description, RefusesAFileThatIsNoUrdf) {
   ExpectSays(CarError("<robot name=\"x\"/>"), {"car.urdf"});
 }
 
+TEST_F(Description, FindsTheJointThatTurnsTheCameras) {
+  const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
+  ASSERT_TRUE(car.pan);
+  EXPECT_EQ(car.links[car.pan->link].name, "camera_pan");
+  EXPECT_FALSE(car.pan->moves);
+  EXPECT_DOUBLE_EQ(car.pan->slew_rad_s, 3.2);
+  EXPECT_LT((car.pan->T_base_pan.translation() - Eigen::Vector3d(0.245, 0.0, 0.315)).norm(), 1e-12);
+  // A quarter to the left: what was 0.055 m ahead of the axis is beside it, and looks to the left.
+  const Pose left = car.pan->Turned(car.T_base_depth, std::numbers::pi / 2.0);
+  EXPECT_LT((left.translation() - Eigen::Vector3d(0.245, 0.055, 0.35)).norm(), 1e-12);
+  EXPECT_LT((left.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_LT((car.pan->Turned(car.T_base_color, 0.0).matrix() - car.T_base_color.matrix()).norm(), 1e-12);
+}
+
+TEST_F(Description, RefusesAJointThatCannotTurnTheCameras) {
+  const std::string pan = "<origin xyz=\"0.245 0 0.315\"/><axis xyz=\"0 0 1\"/>";
+  const auto with = [&](const std::string& to) { return CarError(Replaced(merlin_, pan, to)); };
+  ExpectSays(with("<origin xyz=\"0.245 0 0.315\"/><axis xyz=\"0 1 0\"/>"), {"pan_joint", "upright"});
+  ExpectSays(CarError(Replaced(merlin_, "<joint name=\"pan_joint\" type=\"revolute\">",
+                               "<joint name=\"pan_joint\" type=\"fixed\">")),
+             {"pan_joint", "revolute"});
+  ExpectSays(CarError(Replaced(merlin_, "lower=\"-1.5707963267948966\"", "lower=\"0.5\"")), {"pan_joint", "lower <= 0"});
+  // Upside down: the same joint, counted the other way.
+  const std::string below = Replaced(merlin_, pan, "<origin xyz=\"0.245 0 0.315\"/><axis xyz=\"0 0 -1\"/>");
+  const CarDescription car = ReadCar(File("car.urdf", Replaced(below, "lower=\"-1.5707963267948966\"", "lower=\"-1\"")));
+  EXPECT_EQ(car.links[car.pan->link].axis, Eigen::Vector3d::UnitZ());
+  EXPECT_DOUBLE_EQ(car.links[car.pan->link].joint_max_rad, 1.0);
+  EXPECT_GT(car.pan->Turned(car.T_base_depth, 0.5).translation().y(), 0.0);
+}
+
 TEST_F(Description, NamesTheLineOfBrokenXml) {
   ExpectSays(CarError("<robot name=\"x\">\n  <link name=\"base_link\">\n</robot>"), {"car.urdf:", "XML"});
   ExpectSays(CarError("<robot name=\"x\">\n  <link name=\"base_link\"/>\n  <link name=\"a\"></lnk>\n</robot>"),

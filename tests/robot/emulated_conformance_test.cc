@@ -23,6 +23,7 @@ TwinOptions Options(const sim::TemporaryFile& room) {
   TwinOptions options;
   options.world.room = room.path();
   options.world.car = sim::Merlin();
+  options.world.car.pan->moves = true;
   options.depth.sheet = ReadDepthCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/pmd_3k_s.yaml");
   options.compass.emplace();
   return options;

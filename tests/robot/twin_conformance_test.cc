@@ -21,6 +21,7 @@ TwinOptions Options(const sim::TemporaryFile& room) {
   TwinOptions options;
   options.world.room = room.path();
   options.world.car = sim::Merlin();
+  options.world.car.pan->moves = true;
   options.depth.sheet = ReadDepthCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/pmd_3k_s.yaml");
   options.compass.emplace();
   options.end = std::chrono::hours(1);
@@ -110,6 +111,14 @@ TEST(Twin, GivesTheSameColourForAnyNumberOfThreads) {
       EXPECT_EQ(frames[i].settings, first[i].settings);
     }
   }
+}
+
+TEST(Twin, HasNoPanUnitAndNoStandUnlessTheyAreAskedFor) {
+  const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
+  TwinOptions options = Options(room);
+  options.world.car.pan->moves = false;
+  EXPECT_EQ(Twin(options).robot().pan, nullptr);
+  EXPECT_EQ(Twin(options).robot().stand, nullptr);
 }
 
 TEST(Twin, ReportsTheLensItSeesThrough) {

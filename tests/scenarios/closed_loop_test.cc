@@ -100,6 +100,43 @@ TEST(CorridorObstacle, StopsBeforeTheBoxStaysAndDrivesOn) {
   EXPECT_GE(*m.distance_m, 9.0);  // about 5.5 m until it stands; the rest after the box has gone
 }
 
+// A small battery with 12 % of its charge left, on the way.
+TEST(EmptyBattery, EndsTheRunWithAVerdictThatSaysSo) {
+  const TemporaryFolder folder;
+  const RunReport report =
+      DriveScenario("corridor_short", folder.path() / "a",
+                    {"car.drivetrain.battery.capacity_ah=0.05", "car.drivetrain.battery.charge=0.12", "checks={}"}, 2, sim::Gl::kOff);
+  EXPECT_EQ(report.result.verdict, Verdict::kFail);
+  EXPECT_NE(report.result.fault.find("battery is empty"), std::string::npos) << report.result.fault;
+  EXPECT_LT(*report.result.metrics.sim_time_s, 19.0);
+  EXPECT_GT(*report.result.metrics.distance_m, 0.5);
+  std::ifstream in(folder.path() / "a/result.json");
+  EXPECT_NE(std::string(std::istreambuf_iterator<char>(in), {}).find("battery is empty"), std::string::npos);
+}
+
+TEST(EmptyBattery, LeavesTheCarStandingWithAReserve) {
+  const std::filesystem::path models = Home() / "models";
+  TwinOptions options;
+  options.world = {models / "rooms/corridor_26x21.xml", ReadCar(models / "merlin/merlin.urdf"), FromXyYaw(-6.0, -9.5, 0.0), {}};
+  options.world.drivetrain.battery = {.capacity_ah = 0.05, .charge = 0.12};
+  options.materials = sim::ReadMaterials(models / "materials.yaml");
+  options.depth.sheet = ReadDepthCameraSheet(models / "cameras/pmd_3k_s.yaml");
+  options.compass.emplace();
+  options.end = std::chrono::seconds(60);
+  Twin twin(options);
+  DriveLoop loop(twin.robot(), options.world.car, {}, {}, {}, {});
+  bool warned = false, drove = false;
+  const auto tick = [&](Time, const Decision& decision) {
+    warned = warned || decision.doing.ends_with("battery low");
+    drove = drove || twin.world().Speed_m_s() > 0.4;
+  };
+  EXPECT_EQ(loop.Run(never, {.depth = {}, .color = {}, .tick = tick}), LoopEnd::kBatteryEmpty);
+  EXPECT_TRUE(warned);
+  EXPECT_TRUE(drove);
+  EXPECT_LT(std::abs(twin.world().Speed_m_s()), 0.01);
+  EXPECT_GT(twin.world().drive().battery().charge(), 0.0);
+}
+
 // The 24 m straight, its end wall first seen from 22 m away: two and one unambiguous ranges off.
 TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
   const std::filesystem::path models = Home() / "models";

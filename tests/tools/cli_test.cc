@@ -42,7 +42,8 @@ void ExpectRefused(const std::string& arguments, const std::string& part, const 
 
 TEST(Cli, HelpFitsAScreen) {
   const TemporaryFolder folder;
-  for (const char* arguments : {"--help", "run --help", "list --help", "calibrate odometry --help", "doctor --help", "register --help"}) {
+  for (const char* arguments :
+       {"--help", "run --help", "drive --help", "list --help", "calibrate odometry --help", "doctor --help", "register --help"}) {
     const Outcome outcome = Merlin(arguments, folder.path());
     EXPECT_EQ(outcome.code, 0) << arguments;
     EXPECT_LE(std::ranges::count(outcome.said, '\n'), 40) << arguments;

@@ -14,6 +14,7 @@ enum ExitCode { kPass = 0, kFail = 1, kBadInput = 2, kCannot = 3, kOurFault = 4,
 extern std::atomic<bool> interrupted;
 
 void AddRun(CLI::App& app, int& exit_code);
+void AddDrive(CLI::App& app, int& exit_code);
 void AddCamera(CLI::App& app, int& exit_code);
 void AddCalibrate(CLI::App& app, int& exit_code);
 void AddRegister(CLI::App& app, int& exit_code);

@@ -6,6 +6,7 @@
 
 #include "robot/types/error.h"
 #include "tools/cli/commands.h"
+#include "tools/drive/raw_terminal.h"
 
 namespace merlin::cli {
 
@@ -15,7 +16,9 @@ namespace {
 
 // Once: the run ends in good order. Again: at once.
 void OnInterrupt(int) {
-  if (interrupted.exchange(true)) _exit(kInterrupted);
+  if (!interrupted.exchange(true)) return;
+  RestoreTerminal();
+  _exit(kInterrupted);
 }
 
 int Main(int argc, char** argv) {
@@ -24,6 +27,7 @@ int Main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = kPass;
   AddRun(app, exit_code);
+  AddDrive(app, exit_code);
   AddCamera(app, exit_code);
   AddCalibrate(app, exit_code);
   AddOptimize(app, exit_code);

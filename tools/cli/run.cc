@@ -13,6 +13,7 @@
 #include "tools/cli/commands.h"
 #if MERLIN_TWIN
 #include "scenarios/run.h"
+#include "tools/cli/run_options.h"
 #endif
 
 namespace merlin::cli {
@@ -28,9 +29,13 @@ struct Arguments {
 
 #if MERLIN_TWIN
 
+}  // namespace
+
 sim::Gl GlOf(const std::string& name) {
   return name == "egl" ? sim::Gl::kEgl : name == "osmesa" ? sim::Gl::kOsmesa : name == "off" ? sim::Gl::kOff : sim::Gl::kAuto;
 }
+
+namespace {
 
 double PaceOf(const std::string& text) {
   if (text == "fast") return 0.0;
@@ -45,6 +50,8 @@ double PaceOf(const std::string& text) {
   return pace;
 }
 
+}  // namespace
+
 void SetRobot(const std::string& text, RunOptions& options) {
   const std::string hardware = "hardware:";
   if (text == "twin") return;
@@ -57,6 +64,8 @@ void SetRobot(const std::string& text, RunOptions& options) {
     throw InputError("--robot", "unknown robot", "twin, emulated or hardware:FILE", "'" + text + "'");
   }
 }
+
+namespace {
 
 // A line that renews itself on a terminal, a plain one every ten seconds of the run elsewhere.
 class Progress {

@@ -13,12 +13,19 @@ constexpr auto kNap = std::chrono::microseconds(500);
 constexpr Duration kCaughtUp = std::chrono::milliseconds(20);  // with what setting up has taken
 
 EmulatedCar CarOf(Twin& twin) {
-  return {.send = [&twin](const DriveCommand& command) { twin.robot().drive->Send(command); },
+  EmulatedCar car{.send = [&twin](const DriveCommand& command) { twin.robot().drive->Send(command); },
           .read =
               [&twin] {
                 const sim::World& world = std::as_const(twin).world();
                 return world.drive().Read(world.model(), world.data(), world.Now());
               }};
+  if (twin.robot().pan == nullptr) return car;
+  car.pan = [&twin](double angle_rad) { twin.robot().pan->Send(angle_rad); };
+  car.pan_angle_rad = [&twin] {
+    const sim::World& world = std::as_const(twin).world();
+    return world.pan()->Read_rad(world.data());
+  };
+  return car;
 }
 
 // Without end; and attitudes fresh whenever they are asked for, not at the rate the stack would see.

@@ -26,6 +26,8 @@ struct Session {
         while (auto m = robot.compass->Poll()) compass.push_back(*m);
       if (robot.color)
         while (auto m = robot.color->Poll()) color.push_back(*m);
+      if (robot.pan)
+        while (auto m = robot.pan->Poll()) pan.push_back(*m);
     }
   }
   double Metres(std::int64_t counts) { return static_cast<double>(counts) * rig->car().MetresPerCount(); }
@@ -38,6 +40,7 @@ struct Session {
   std::vector<DriveState> drive;
   std::vector<CompassReading> compass;
   std::vector<ColorFrame> color;
+  std::vector<PanState> pan;
 };
 
 DriveCommand Go(double speed_m_s, double steering_rad, double valid_s = 0.3) {
@@ -229,6 +232,54 @@ TEST_P(HalConformance, ClampsCommandsBeyondTheCarsLimits) {
   Session session(GetParam());
   session.Drive(1.0, Go(0.0, 2.0));
   EXPECT_NEAR(session.drive.back().steering_rad, session.rig->car().steering_max_rad, 0.02);
+}
+
+// The wall is square ahead: turned to the left, what is on the left is farther.
+TEST_P(HalConformance, PansToTheLeftForPositiveAngles) {
+  Session session(GetParam());
+  if (session.robot.pan == nullptr) GTEST_SKIP() << "no pan unit";
+  for (const double side : {1.0, -1.0}) {
+    session.robot.pan->Send(side * 0.15);
+    session.Drive(1.0, std::nullopt);
+    EXPECT_NEAR(session.pan.back().angle_rad, side * 0.15, 0.01);
+    const CameraModel& camera = session.robot.depth->Info().sheet.camera;
+    const std::size_t row = static_cast<std::size_t>(camera.height / 2) * camera.width;
+    const DepthFrame& frame = session.depth.back();
+    EXPECT_GT(side * (frame.range_m[row + camera.width / 4] - frame.range_m[row + camera.width * 3 / 4]), 0.2) << side;
+  }
+}
+
+TEST_P(HalConformance, PansAtItsSpeedToItsLimit) {
+  Session session(GetParam());
+  if (session.robot.pan == nullptr) GTEST_SKIP() << "no pan unit";
+  session.Drive(0.5, std::nullopt);
+  EXPECT_NEAR(session.pan.back().angle_rad, 0.0, 0.01) << "ahead at the start";
+  const Time sent = session.robot.clock->Now();
+  session.robot.pan->Send(3.0);
+  session.Drive(1.5, std::nullopt);
+  const CarPan pan = *session.rig->car().pan;
+  const double limit_rad = session.rig->car().links[pan.link].joint_max_rad;
+  for (const PanState& state : session.pan) {
+    const double since_s = std::max(0.0, Seconds(state.stamp - sent));
+    EXPECT_LE(state.angle_rad, pan.slew_rad_s * since_s + 0.05);
+    EXPECT_GE(state.angle_rad, std::min(limit_rad, pan.slew_rad_s * (since_s - 0.1 - Seconds(session.rig->slack()))) - 0.05);
+  }
+  EXPECT_NEAR(session.pan.back().angle_rad, limit_rad, 0.02);
+}
+
+TEST_P(HalConformance, HoldsItsPanAngleWhenNothingMoreIsSentAndIgnoresWhatIsNoNumber) {
+  Session session(GetParam());
+  if (session.robot.pan == nullptr) GTEST_SKIP() << "no pan unit";
+  session.robot.pan->Send(-0.8);
+  session.Drive(1.0, Go(0.0, 0.0, 0.05));
+  session.robot.pan->Send(std::nan(""));
+  session.robot.pan->Send(HUGE_VAL);
+  session.Drive(2.0, std::nullopt);
+  EXPECT_TRUE(session.drive.back().expired);
+  for (const PanState& state : session.pan)
+    EXPECT_TRUE(session.pan.back().stamp - state.stamp >= std::chrono::seconds(2) || std::abs(state.angle_rad + 0.8) < 0.02);
+  for (std::size_t i = 1; i < session.pan.size(); ++i) EXPECT_GT(session.pan[i].stamp, session.pan[i - 1].stamp);
+  EXPECT_EQ(session.robot.pan->Status().health, DeviceStatus::Health::kOk);
 }
 
 TEST_P(HalConformance, ReturnsAtOnceForATimeThatHasPassed) {

@@ -1,0 +1,32 @@
+// A joystick of the Linux kernel (/dev/input/js0), read without waiting. A named pipe that carries the same events does
+// as well: a stick on another machine (`ssh there cat /dev/input/js0 > pipe`), or one recorded.
+#pragma once
+
+#include <filesystem>
+
+#include "robot/protocol/joystick.h"
+
+namespace merlin {
+
+class JoystickDevice {
+ public:
+  // Throws MachineError: no such device, or not to be opened; InputError: what is there is no joystick.
+  explicit JoystickDevice(const std::filesystem::path& device);
+  ~JoystickDevice();
+  JoystickDevice(const JoystickDevice&) = delete;
+  JoystickDevice& operator=(const JoystickDevice&) = delete;
+
+  // Takes what has come. False: it has gone (pulled out; nobody writes to the pipe) and its state is old; it is opened
+  // again when it is back. A stick that is held still says nothing and is there.
+  bool Read();
+  const joystick::State& state() const { return decoder_.state(); }
+
+ private:
+  void Close();
+
+  std::filesystem::path device_;
+  int fd_ = -1;
+  joystick::Decoder decoder_;
+};
+
+}  // namespace merlin

@@ -1,0 +1,88 @@
+#include "tools/drive/stick.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace merlin {
+namespace {
+
+constexpr HandLimits kLimits{.speed_m_s = 0.8, .steering_rad = 0.4};
+constexpr Time kNow = std::chrono::seconds(3);
+
+joystick::State At(double right, double back) {
+  joystick::State state;
+  state.axes[0] = right;
+  state.axes[1] = back;
+  return state;
+}
+
+TEST(Stick, SteersLeftToTheLeftAndDrivesAheadToTheFront) {
+  Stick stick(kLimits);
+  ManualWish wish = stick.Update(At(-1.0, -1.0), true, kNow);
+  EXPECT_TRUE(wish.held);
+  EXPECT_DOUBLE_EQ(wish.steering_rad, 0.4);
+  EXPECT_DOUBLE_EQ(wish.speed_m_s, 0.8);
+  EXPECT_EQ(wish.heard, kNow);
+  wish = stick.Update(At(1.0, 1.0), true, kNow);
+  EXPECT_DOUBLE_EQ(wish.steering_rad, -0.4);
+  EXPECT_DOUBLE_EQ(wish.speed_m_s, -0.8);
+}
+
+TEST(Stick, IsLetGoInTheMiddleAndStartsFromZeroBeyondTheDeadZone) {
+  Stick stick(kLimits);
+  for (const double rest : {0.0, 0.11, -0.11}) {
+    const ManualWish wish = stick.Update(At(rest, rest), true, kNow);
+    EXPECT_FALSE(wish.held) << rest;
+    EXPECT_EQ(wish.speed_m_s, 0.0);
+    EXPECT_EQ(wish.steering_rad, 0.0);
+  }
+  const ManualWish wish = stick.Update(At(0.0, -0.13), true, kNow);
+  EXPECT_TRUE(wish.held);
+  EXPECT_NEAR(wish.speed_m_s, 0.8 * 0.01 / 0.88, 1e-12);
+  EXPECT_NEAR(stick.Update(At(0.0, -0.56), true, kNow).speed_m_s, 0.4, 1e-12);  // half of what is left of the way
+}
+
+TEST(Stick, SwitchesAutonomyAtEachPressAndOverridesWhileHeld) {
+  Stick stick(kLimits);
+  joystick::State state;
+  state.buttons[Stick::kAutonomyButton] = true;
+  EXPECT_FALSE(stick.Update(state, true, kNow).autonomy) << "it was down before";
+  state.buttons[Stick::kAutonomyButton] = false;
+  stick.Update(state, true, kNow);
+  state.buttons[Stick::kAutonomyButton] = true;
+  EXPECT_TRUE(stick.Update(state, true, kNow).autonomy);
+  EXPECT_TRUE(stick.Update(state, true, kNow).autonomy) << "still the same press";
+  state.buttons[Stick::kAutonomyButton] = false;
+  EXPECT_TRUE(stick.Update(state, true, kNow).autonomy);
+  state.buttons[Stick::kAutonomyButton] = true;
+  EXPECT_FALSE(stick.Update(state, true, kNow).autonomy);
+
+  state.buttons[Stick::kOverrideButton] = true;
+  EXPECT_TRUE(stick.Update(state, true, kNow).override_stop);
+  state.buttons[Stick::kOverrideButton] = false;
+  EXPECT_FALSE(stick.Update(state, true, kNow).override_stop);
+  EXPECT_FALSE(stick.Update(state, true, kNow).quit);
+  state.buttons[Stick::kQuitButton] = true;
+  EXPECT_TRUE(stick.Update(state, true, kNow).quit);
+}
+
+TEST(Stick, LetsGoAndAgesWhenItHasGone) {
+  Stick stick(kLimits);
+  EXPECT_TRUE(stick.Update(At(0.0, -1.0), true, kNow).held);
+  const ManualWish wish = stick.Update(At(0.0, -1.0), false, kNow + std::chrono::seconds(1));
+  EXPECT_FALSE(wish.held);
+  EXPECT_EQ(wish.speed_m_s, 0.0);
+  EXPECT_EQ(wish.heard, kNow);
+}
+
+TEST(Stick, NeverWishesWhatIsNoNumber) {
+  for (int i = -100; i <= 100; ++i) {
+    const ManualWish wish = Stick(kLimits).Update(At(i / 100.0, -i / 100.0), true, kNow);
+    EXPECT_LE(std::abs(wish.speed_m_s), kLimits.speed_m_s);
+    EXPECT_LE(std::abs(wish.steering_rad), kLimits.steering_rad);
+  }
+}
+
+}  // namespace
+}  // namespace merlin

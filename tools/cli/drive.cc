@@ -1,0 +1,190 @@
+// `merlin drive`: drives by hand. The car maps as it goes; what a run leaves, this leaves as well.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/hardware/joystick_device.h"
+#include "robot/types/error.h"
+#include "scenarios/scenario.h"
+#include "tools/cli/commands.h"
+#include "tools/drive/keys.h"
+#include "tools/drive/raw_terminal.h"
+#include "tools/drive/stick.h"
+#if MERLIN_TWIN
+#include "robot/description/description.h"
+#include "scenarios/names.h"
+#include "scenarios/run.h"
+#include "tools/cli/run_options.h"
+#include "tools/drive/radio_hand.h"
+#endif
+
+namespace merlin::cli {
+namespace {
+
+struct Arguments {
+  std::string scenario = "corridor_loop", out, robot = "twin", gl = "auto", joystick, seed;
+  std::string duration_s = "3600";  // the scenario's reader checks it
+  double speed_m_s = HandLimits{}.speed_m_s;
+  int threads = 2, radio_baud = 0;
+  std::vector<std::string> sets;
+  bool keyboard = false, autonomy = false;
+};
+
+#if MERLIN_TWIN
+
+constexpr char kKeysHelp[] =
+    "w a s d or arrows drive, space stops, p autonomy, Shift overrides the obstacle stop, q quits\n";
+constexpr char kStickHelp[] = "stick drives, button 0 overrides the obstacle stop, button 1 autonomy, button 7 quits\n";
+
+// The operator's end: what his hand is on.
+class Station {
+ public:
+  Station(const Arguments& arguments, const HandLimits& limits) : keys_(limits), stick_(limits) {
+    if (arguments.joystick.empty())
+      terminal_.emplace(STDIN_FILENO);
+    else
+      joystick_.emplace(arguments.joystick);
+    fmt::print(stderr, "{}", joystick_ ? kStickHelp : kKeysHelp);
+  }
+  ManualWish Wish(Time now) {
+    if (joystick_) {
+      const bool there = joystick_->Read();
+      return stick_.Update(joystick_->state(), there, now);
+    }
+    keys_.Feed(terminal_->Read(), now);
+    ManualWish wish = keys_.Wish(now);
+    wish.quit = wish.quit || !terminal_->there();
+    return wish;
+  }
+
+ private:
+  Keys keys_;
+  Stick stick_;
+  std::optional<JoystickDevice> joystick_;
+  std::optional<RawTerminal> terminal_;
+};
+
+// What the operator sees: a line that renews itself on a terminal, a plain one every second elsewhere.
+class StatusLine {
+ public:
+  void Show(Time now, const HandStatus& status) {
+    const bool changed = status.arbitration.driver != driver_;
+    driver_ = status.arbitration.driver;
+    if (now < next_ && !changed) return;
+    next_ = now + (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(1000));
+    const char* battery = status.energy == EnergyLevel::kEnough ? ""
+                          : status.energy == EnergyLevel::kLow  ? " LOW"
+                                                                : " EMPTY";
+    const std::string line =
+        fmt::format("{:7.1f} s  {:5.2f} m/s  steering {:+5.1f} deg  battery {:5.2f} V{}  {}{}{}", Seconds(now),
+                    status.speed_m_s, status.state.steering_rad * 180.0 / std::numbers::pi, status.state.battery_v,
+                    battery, Name(driver_), status.doing.empty() ? "" : ": ", status.doing);
+    if (terminal_)
+      fmt::print(stderr, "\r\033[K{}", line);
+    else
+      fmt::print(stderr, "{}\n", line);
+    std::fflush(stderr);
+  }
+  ~StatusLine() {
+    if (terminal_) fmt::print(stderr, "\n");
+  }
+
+ private:
+  Time next_{0};
+  Driver driver_ = Driver::kNobody;
+  bool terminal_ = isatty(STDERR_FILENO) == 1;
+};
+
+RunOptions OptionsOf(const Arguments& arguments) {
+  RunOptions options;
+  options.name = std::filesystem::path(arguments.scenario).stem().string();
+  std::vector<std::string> sets = arguments.sets;
+  if (!arguments.seed.empty()) sets.push_back("seed=" + arguments.seed);
+  sets.push_back("duration_s=" + arguments.duration_s);
+  sets.push_back("checks={}");  // they are the pilot's
+  options.scenario = ReadScenario(arguments.scenario, sets);
+  SetRobot(arguments.robot, options);
+  if (options.robot == RobotKind::kTwin) options.pace = 1.0;  // the others keep the clock's
+  options.out = arguments.out.empty() ? std::filesystem::path("runs") / (options.name + "-drive")
+                                      : std::filesystem::path(arguments.out);
+  options.gl = GlOf(arguments.gl);
+  options.threads = arguments.threads;
+  return options;
+}
+
+int Drive(const Arguments& arguments) {
+  RunOptions options = OptionsOf(arguments);
+  const CarDescription car = ReadCar(CarFile(options.scenario.car.model));
+  const HandLimits limits{std::min(arguments.speed_m_s, car.drivetrain.speed_max_m_s), car.steering_max_rad};
+  std::optional<RadioHand> radio;
+  if (arguments.radio_baud > 0) radio.emplace(RadioConfig{.baud = arguments.radio_baud}, limits, options.scenario.seed);
+  RunReport report;
+  {
+    StatusLine line;
+    Station station(arguments, limits);
+    options.hand = [&](Time now) {
+      ManualWish wish = station.Wish(now);
+      wish.autonomy = wish.autonomy && arguments.autonomy;
+      return radio ? radio->Send(wish, now) : wish;
+    };
+    options.hand_status = [&line](Time now, const HandStatus& status) { line.Show(now, status); };
+    report = RunScenario(options, interrupted);
+  }
+  const RunResult& result = report.result;
+  if (!result.fault.empty()) fmt::print("stopped: {}\n", result.fault);
+  if (!report.note.empty()) fmt::print("note: {}\n", report.note);
+  fmt::print("drove {:.2f} m in {:.1f} s, {} collisions\nfiles: {} (look at map.png)\n",
+             result.metrics.distance_m.value_or(0.0), result.metrics.sim_time_s.value_or(0.0),
+             result.metrics.collisions.value_or(0), options.out.string());
+  return result.verdict == Verdict::kPass ? kPass : result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
+}
+
+#else
+
+int Drive(const Arguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
+
+#endif
+
+std::string TopSpeed(const std::string& text) {
+  double speed_m_s = 0.0;  // what is no number, CLI11 refuses
+  const bool number = CLI::detail::lexical_cast(text, speed_m_s);
+  return number && speed_m_s >= 0.05 && speed_m_s <= 2.0 ? "" : "expected 0.05 to 2 m/s, got '" + text + "'";
+}
+
+}  // namespace
+
+void AddDrive(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* drive = app.add_subcommand("drive", "drives by hand, in real time; the car maps as it goes");
+  drive->add_option("scenario", arguments->scenario, "where: a name in scenarios/, or a path; default corridor_loop");
+  CLI::Option* joystick = drive->add_option("--joystick", arguments->joystick,
+                                            "a device such as /dev/input/js0, or a named pipe with its events");
+  drive
+      ->add_flag("--keyboard", arguments->keyboard,
+                 "this terminal's keys (default): w a s d or arrows drive, space stops, q quits")
+      ->excludes(joystick);
+  drive->add_flag("--autonomy", arguments->autonomy, "key p or button 1 lets the pilot drive while nobody steers");
+  drive->add_option("--robot", arguments->robot, "twin (default), emulated, or hardware:FILE; see run --help");
+  drive
+      ->add_option("--radio", arguments->radio_baud,
+                   "the hand's commands go through the model of the car's radio, at this baud rate")
+      ->check(CLI::IsMember({9600, 19200, 57600, 115200}));
+  drive->add_option("--speed", arguments->speed_m_s, "m/s at full stick; default 0.8")->check(TopSpeed);
+  drive->add_option("--duration", arguments->duration_s, "seconds after which it ends; default 3600");
+  drive->add_option("--seed", arguments->seed, "of all randomness; default the scenario's")->check(WholeNumber);
+  drive->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-drive");
+  drive->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")
+      ->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
+  drive->add_option("--threads", arguments->threads, "default 2")->check(CLI::Range(1, 256));
+  drive->add_option("--set", arguments->sets, "a.b=c, over the scenario's file; may be repeated")
+      ->allow_extra_args(false);
+  drive->callback([arguments, &exit_code] { exit_code = Drive(*arguments); });
+}
+
+}  // namespace merlin::cli

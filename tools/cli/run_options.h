@@ -1,0 +1,16 @@
+// What the subcommands that run a scenario take from their command lines alike.
+#pragma once
+
+#include <string>
+
+#include "scenarios/run.h"
+
+namespace merlin::cli {
+
+// auto, egl, osmesa or off.
+sim::Gl GlOf(const std::string& name);
+
+// twin, emulated or hardware:FILE; throws InputError for anything else.
+void SetRobot(const std::string& text, RunOptions& options);
+
+}  // namespace merlin::cli

@@ -1,0 +1,31 @@
+// The operator's hand at the other end of a radio: what it wants travels through the model of MERLIN's modems
+// (robot/twin/devices/radio.h), in sevenths of the limits, late and sometimes not at all.
+#pragma once
+
+#include <cstdint>
+
+#include "autonomy/arbitrate.h"
+#include "robot/protocol/operator.h"
+#include "robot/twin/devices/radio.h"
+#include "tools/drive/hand.h"
+
+namespace merlin {
+
+class RadioHand {
+ public:
+  RadioHand(const RadioConfig& config, const HandLimits& limits, std::uint64_t seed)
+      : radio_(config, seed), limits_(limits) {}
+
+  // at_station: the hand as it is now; a station whose stick has gone sends nothing. What the car last heard comes
+  // back, with the time it heard it. Who wants to quit does not need the radio for it.
+  ManualWish Send(const ManualWish& at_station, Time now);
+
+ private:
+  Radio radio_;
+  HandLimits limits_;
+  operator_link::Decoder decoder_;
+  std::uint8_t sequence_ = 0;
+  ManualWish heard_{.heard = Time(-std::chrono::hours(1))};  // nothing yet
+};
+
+}  // namespace merlin
