@@ -11,6 +11,7 @@
 #include "perception/pipeline.h"
 #include "robot/types/config.h"
 #include "scenarios/judge/result.h"
+#include "sim/compass.h"
 #include "sim/drivetrain_config.h"
 #include "slam/slam.h"
 
@@ -91,12 +92,14 @@ void Visit(Visitor& v, ColorSensor& c) {
 struct CompassSensor {
   double rate_hz = 10.0;
   double noise_rad = 0.0087;  // one sigma of each angle; 0.5 deg (data sheets: 0.3-1 deg)
+  std::vector<sim::Steel> steel;  // of the twin: what bends its field
 };
 
 template <class Visitor>
 void Visit(Visitor& v, CompassSensor& c) {
   v("rate_hz", c.rate_hz, {0.1, 500.0});
   v("noise_rad", c.noise_rad, {0.0, 0.2});
+  v("steel", c.steel);
 }
 
 struct Sensors {

@@ -58,7 +58,7 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
     twin.color->motion_blur = sensors.color->motion_blur;
   }
   if (sensors.compass)
-    twin.compass.emplace(sim::CompassConfig{sensors.compass->noise_rad, sensors.compass->noise_rad}, sensors.compass->rate_hz);
+    twin.compass.emplace(sim::CompassConfig{sensors.compass->noise_rad, sensors.compass->noise_rad, sensors.compass->steel}, sensors.compass->rate_hz);
   twin.end = FromSeconds(scenario.duration_s);
   twin.threads = options.threads;
   return twin;

@@ -23,7 +23,8 @@ PosePrior Slam::Predict(const Observation& observation) const {
 
   PosePrior prior;
   prior.T_map_base = FromXyYaw(T_map_base.translation().x(), T_map_base.translation().y(), yaw_rad);
-  const double odometry_m = config_.odometry_floor_m + config_.odometry_share * motion.translation().norm();
+  const double share = slipping() ? std::max(std::abs(slip_), config_.odometry_share) : config_.odometry_share;
+  const double odometry_m = config_.odometry_floor_m + share * motion.translation().norm();
   const double yaw_sigma_rad = has_heading ? std::max(observation.yaw_sigma_rad, config_.yaw_floor_rad)
                                            : config_.yaw_floor_rad + config_.odometry_share * std::abs(Yaw(motion));
   Vector6d sigma;
@@ -57,8 +58,10 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   lost_frames_ = last_.converged || keyframes_.empty() ? 0 : lost_frames_ + 1;
   Pose T_map_base = last_.converged ? last_.T_map_base : prior.T_map_base;
 
-  path_m_ += (T_odom_last_.inverse() * observation.T_odom_base).translation().norm();
+  const Pose motion = T_odom_last_.inverse() * observation.T_odom_base;
+  path_m_ += motion.translation().norm();
   T_odom_last_ = observation.T_odom_base;
+  if (last_.converged) WatchWheels(motion, prior.T_map_base.inverse() * T_map_base);
   // The first key frame must be something to hold on to; later ones must have held on to it.
   const bool trusted = keyframes_.empty() ? static_cast<int>(source.size()) >= config_.icp.inliers_min : last_.converged;
   if (trusted) {
@@ -73,6 +76,15 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   T_map_last_ = T_map_base;
   Record(observation.stamp, T_map_base);
   return T_map_base;
+}
+
+// What registration adds to the way along it, as a share of the way, averaged. While the wheels slip it lags behind, but
+// each frame it takes back what the frame's own way was wrong by.
+void Slam::WatchWheels(const Pose& motion, const Pose& T_prior_registered) {
+  const double way_m = motion.translation().norm();
+  if (way_m <= 0.0) return;
+  const double added = T_prior_registered.translation().dot(motion.translation()) / (way_m * way_m);
+  slip_ += (1.0 - std::exp(-way_m / config_.slip_memory_m)) * (added - slip_);
 }
 
 void Slam::Record(Time stamp, const Pose& T_map_base) {

@@ -1,6 +1,7 @@
 // Simultaneous localisation and mapping as one sentence: guess, register, keep key frames, close loops, map.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct SlamConfig {
   double revisit_rad = 0.4;             // [0, 3.2] ...and so turned saves a new one
   double correction_min_m = 0.005;      // [0, 1] a loop that moves no key frame farther leaves the map as it is
   double odometry_share = 0.02;         // [1e-4, 1] one sigma of odometry over the way driven; guess
+  double slip_min = 0.08;               // [0.01, 1] of the way that registration takes back: the wheels slip, and are believed less; guess
+  double slip_memory_m = 0.3;           // [0.01, 10] driven over which that is averaged; guess
   double odometry_floor_m = 0.001;      // [1e-5, 1] and at least; guess
   double yaw_floor_rad = 0.003;         // [1e-5, 1] the heading's sigma is not believed below this; guess
   double floor_sigma_m = 0.002;         // [1e-4, 10] the car stays on a plane: height...
@@ -50,6 +53,8 @@ void Visit(Visitor& v, SlamConfig& c) {
   v("revisit_rad", c.revisit_rad, {0.0, 3.2});
   v("correction_min_m", c.correction_min_m, {0.0, 1.0});
   v("odometry_share", c.odometry_share, {1e-4, 1.0});
+  v("slip_min", c.slip_min, {0.01, 1.0});
+  v("slip_memory_m", c.slip_memory_m, {0.01, 10.0});
   v("odometry_floor_m", c.odometry_floor_m, {1e-5, 1.0});
   v("yaw_floor_rad", c.yaw_floor_rad, {1e-5, 1.0});
   v("floor_sigma_m", c.floor_sigma_m, {1e-4, 10.0});
@@ -77,6 +82,8 @@ class Slam {
   const RegisterResult& last() const { return last_; }  // how well the last frame fitted
   // Frames in a row that did not: odometry carried the pose, and nothing of them entered the map.
   int lost_frames() const { return lost_frames_; }
+  // Registration takes back (or adds) this share of the way that the wheels report, of late.
+  bool slipping() const { return std::abs(slip_) > config_.slip_min; }
   const VoxelMap& local_map() const { return local_; }
   const OccupancyGrid& occupancy() const { return occupancy_; }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
@@ -93,6 +100,7 @@ class Slam {
   bool Begin(const Observation& observation);  // false: it waits for the heading
   void Keep(const Observation& observation, const Pose& T_map_base);
   void Record(Time stamp, const Pose& T_map_base);
+  void WatchWheels(const Pose& motion, const Pose& T_prior_registered);
   bool IsRevisit(const Pose& T_map_base) const;
   void RecallFormer(const Pose& T_map_base);
   void SearchLoop(const Observation& observation, Pose& T_map_base);
@@ -115,7 +123,7 @@ class Slam {
   std::optional<Pose> T_map_last_;       // the newest, as corrected
   RegisterResult last_;
   int lost_frames_ = 0;
-  double path_m_ = 0.0, pruned_at_m_ = 0.0;
+  double path_m_ = 0.0, pruned_at_m_ = 0.0, slip_ = 0.0;
   std::optional<Time> first_stamp_;
   std::optional<double> map_turn_rad_;  // yaw in the map less the heading's
   Pose T_odom_last_ = Pose::Identity();

@@ -85,5 +85,16 @@ TEST(Compass, RepeatsWithTheSeedAndChangesWithIt) {
   EXPECT_NE(yaw(1, 2), yaw(2, 2));
 }
 
+TEST(Compass, IsTurnedBySteelMostRightAtItAndNotFarAway) {
+  CompassConfig config = kNoiseless;
+  config.steel = {{.x_m = 2.0, .y_m = -1.0, .reach_m = 0.5, .bend_rad = 0.2}};
+  const auto yaw = [&](double x, double y) { return ReadCompass(FromXyYaw(x, y, 0.3), config, 1, Time{0}, 0).yaw_rad; };
+  EXPECT_NEAR(yaw(2.0, -1.0), 0.5, 1e-12);
+  EXPECT_NEAR(yaw(2.0, -0.5), 0.3 + 0.2 * std::exp(-0.5), 1e-12);
+  EXPECT_NEAR(yaw(12.0, -1.0), 0.3, 1e-12);
+  config.steel.push_back({.x_m = 2.0, .y_m = -1.0, .reach_m = 3.0, .bend_rad = -0.05});
+  EXPECT_NEAR(yaw(2.0, -1.0), 0.45, 1e-12);
+}
+
 }  // namespace
 }  // namespace merlin::sim

@@ -48,6 +48,27 @@ TEST(Slam, CorrectsOdometryThatSlips) {
   EXPECT_EQ(slam.trajectory().size(), 61u);
 }
 
+// Drives 0.9 m of which the wheels report `reported` times as much; true: it ends knowing that they slip.
+bool EndsSlipping(double reported) {
+  Slam slam({});
+  Pose T_odom_base = Pose::Identity();
+  for (int i = 0; i <= 60; ++i) {
+    Observation observation = InRoom(FromXyYaw(-0.5 + 0.015 * i, 0.0, 0.0), 0.05 * i);
+    if (i > 0) T_odom_base.translation().x() += 0.015 * reported;
+    observation.T_odom_base = T_odom_base;
+    EXPECT_TRUE(slam.Update(observation));
+  }
+  EXPECT_NEAR(slam.online().back().T_map_base.translation().x(), 0.9, 0.05);
+  return slam.slipping();
+}
+
+TEST(Slam, TellsWheelsThatSlipFromWheelsThatRoll) {
+  EXPECT_FALSE(EndsSlipping(1.0));
+  EXPECT_FALSE(EndsSlipping(1.03));  // calibration's remains
+  EXPECT_TRUE(EndsSlipping(1.3));
+  EXPECT_TRUE(EndsSlipping(0.8));  // the car slides on while its wheels are braked
+}
+
 TEST(Slam, WaitsForTheHeadingAtTheStartButNotForEver) {
   Slam slam({});
   Observation observation = InRoom(Pose::Identity(), 0.0);
