@@ -1,9 +1,6 @@
 // `merlin camera` and `merlin bench` as their users meet them.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -11,25 +8,10 @@
 #include <string>
 
 #include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/tools/command.h"
 
 namespace merlin {
 namespace {
-
-struct Outcome {
-  int code = -1;
-  std::string said;
-};
-
-Outcome Merlin(const std::string& arguments, const std::filesystem::path& folder, const char* streams = "2>&1") {
-  const std::string command = "cd '" + folder.string() + "' && '" MERLIN_BINARY "' " + arguments + " " + streams;
-  Outcome outcome;
-  FILE* pipe = popen(command.c_str(), "r");
-  std::array<char, 4096> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) outcome.said.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return outcome;
-}
 
 // Exit 2, one sentence that has this part, no file.
 void ExpectRefused(const std::string& arguments, const std::string& part, const std::filesystem::path& folder) {

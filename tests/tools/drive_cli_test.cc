@@ -7,31 +7,18 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/tools/command.h"
 
 namespace merlin {
 namespace {
 
-struct Outcome {
-  int code = -1;
-  std::string said;
-};
-
 Outcome Drive(const std::string& arguments, const std::filesystem::path& folder) {
-  const std::string command =
-      "cd '" + folder.string() + "' && '" MERLIN_BINARY "' drive " + arguments + " 2>&1 </dev/null";
-  Outcome outcome;
-  FILE* pipe = popen(command.c_str(), "r");
-  std::array<char, 4096> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) outcome.said.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return outcome;
+  return Merlin("drive " + arguments, folder, "2>&1 </dev/null");
 }
 
 TEST(DriveCli, RefusesWhatItCannotDriveWith) {

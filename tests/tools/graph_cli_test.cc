@@ -1,11 +1,8 @@
 // `merlin optimize` and `merlin eval` as their users meet them.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -16,31 +13,13 @@
 #include "scenarios/judge/writers.h"
 #include "tests/scenarios/judge/temporary_folder.h"
 #include "tests/shared_data.h"
+#include "tests/tools/command.h"
 
 namespace merlin {
 namespace {
 
-struct Outcome {
-  int code = -1;
-  std::string said;
-};
-
-Outcome Run(const std::string& command, const std::filesystem::path& folder) {
-  FILE* pipe = popen(("cd '" + folder.string() + "' && " + command).c_str(), "r");
-  Outcome outcome;
-  std::array<char, 4096> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) outcome.said.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return outcome;
-}
-
-Outcome Merlin(const std::string& arguments, const std::filesystem::path& folder) {
-  return Run("'" MERLIN_BINARY "' " + arguments + " 2>&1", folder);
-}
-
 nlohmann::json Json(const std::string& arguments, const std::filesystem::path& folder) {
-  const Outcome outcome = Run("'" MERLIN_BINARY "' " + arguments + " --json", folder);
+  const Outcome outcome = Merlin(arguments + " --json", folder, "");
   EXPECT_EQ(outcome.code, 0) << arguments;
   return nlohmann::json::parse(outcome.said);
 }

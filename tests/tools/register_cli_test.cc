@@ -1,11 +1,8 @@
 // `merlin register` as its users meet it.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -13,25 +10,13 @@
 
 #include "robot/types/se3.h"
 #include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/tools/command.h"
 
 namespace merlin {
 namespace {
 
-struct Outcome {
-  int code = -1;
-  std::string said;  // both streams
-};
-
 Outcome Register(const std::string& arguments, const TemporaryFolder& folder) {
-  const std::string command =
-      "cd '" + folder.path().string() + "' && '" MERLIN_BINARY "' register " + arguments + " 2>&1";
-  Outcome outcome;
-  FILE* pipe = popen(command.c_str(), "r");
-  std::array<char, 4096> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) outcome.said.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return outcome;
+  return Merlin("register " + arguments, folder.path());
 }
 
 // A room's corner, moved.
