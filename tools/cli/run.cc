@@ -109,7 +109,12 @@ void PrintSummary(const RunReport& report, const std::filesystem::path& out) {
   if (m.map_size_m[0] && m.map_size_m[1])
     fmt::print("  map {} x {} m, off the plan by {} and {} %\n", Number(m.map_size_m[0], 2), Number(m.map_size_m[1], 2),
                Number(m.map_size_error_percent[0], 2), Number(m.map_size_error_percent[1], 2));
-  fmt::print("  path error (ATE) {} m, walls within {} m of the true ones (95 %)\n", Number(m.ate_rmse_m, 3), Number(m.map_to_plan_p95_m, 3));
+  std::string before;
+  if (const std::int64_t loops = m.loops_closed.value_or(0); loops > 0)
+    before = fmt::format(" ({} m as driven, before {} closed)", Number(m.ate_online_rmse_m, 3),
+                         loops == 1 ? "the loop was" : fmt::format("{} loops were", loops));
+  fmt::print("  path error (ATE) {} m{}, walls within {} m of the true ones (95 %)\n", Number(m.ate_rmse_m, 3), before,
+             Number(m.map_to_plan_p95_m, 3));
   fmt::print("  {} times real time, {} ms a frame in the stack (p50), colour: {}\n", Number(m.real_time_factor, 2),
              Number(m.stack_ms.p50, 1), report.gl_name.empty() ? "none" : report.gl_name);
   const auto print_hash = [](const char* name, const std::optional<std::string>& hash) {
