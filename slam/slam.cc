@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kRecallAtOnce = 2;       // former key frames put back into the local map a frame: it keeps up at 4 m/s
 constexpr double kRecall_m = 4.0;      // of views whose middles are nearer than this
+constexpr double kStands_m = 1e-3;     // from one frame to the next
 constexpr double kLate_m = 1.0;        // what was seen on the last metre looks for loops
 
 }  // namespace
@@ -63,7 +64,10 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   T_odom_last_ = observation.T_odom_base;
   if (last_.converged) WatchWheels(motion, prior.T_map_base.inverse() * T_map_base);
   // The first key frame must be something to hold on to; later ones must have held on to it.
-  const bool trusted = keyframes_.empty() ? static_cast<int>(source.size()) >= config_.icp.inliers_min : last_.converged;
+  const bool sees = static_cast<int>(source.size()) >= config_.icp.inliers_min;
+  const bool restarts = GivesUp(observation.stamp, motion.translation().norm() < kStands_m) && sees;
+  if (restarts) lost_frames_ = 0;
+  const bool trusted = keyframes_.empty() ? sees : last_.converged || restarts;
   if (trusted) {
     Keep(observation, T_map_base);
     if (closer_.IsDue(path_m_)) SearchLoop(observation, T_map_base);
@@ -76,6 +80,14 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   T_map_last_ = T_map_base;
   Record(observation.stamp, T_map_base);
   return T_map_base;
+}
+
+// Nothing that it sees has been in its map for a while, and the car stands: what odometry was wrong by on the little way
+// since then is a lesser evil than to stand there for good.
+bool Slam::GivesUp(Time stamp, bool stands) {
+  if (lost_frames_ == 0 || !stands) lost_standing_.reset();
+  else if (!lost_standing_) lost_standing_ = stamp;
+  return lost_standing_ && Seconds(stamp - *lost_standing_) >= config_.restart_s;
 }
 
 // What registration adds to the way along it, as a share of the way, averaged. While the wheels slip it lags behind, but

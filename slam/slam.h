@@ -33,6 +33,7 @@ struct SlamConfig {
   double yaw_floor_rad = 0.003;         // [1e-5, 1] the heading's sigma is not believed below this; guess
   double floor_sigma_m = 0.002;         // [1e-4, 10] the car stays on a plane: height...
   double tilt_sigma_rad = 0.001;        // [1e-4, 3] ...roll and pitch. At 0.01 and 0.005 the map slowly climbed: 1 % too short
+  double restart_s = 3.0;               // [0.1, 1e6] lost so long while it stands, it maps on from where odometry left it
   double start_sigma_rad = 0.004;       // [1e-4, 10] mapping waits until the heading is known this well,...
   double start_wait_s = 2.0;            // [0, 100] ...but no longer than this
   double map_voxel_m = 0.04;            // [0.005, 1] of the map that is written
@@ -59,6 +60,7 @@ void Visit(Visitor& v, SlamConfig& c) {
   v("yaw_floor_rad", c.yaw_floor_rad, {1e-5, 1.0});
   v("floor_sigma_m", c.floor_sigma_m, {1e-4, 10.0});
   v("tilt_sigma_rad", c.tilt_sigma_rad, {1e-4, 3.0});
+  v("restart_s", c.restart_s, {0.1, 1e6});
   v("start_sigma_rad", c.start_sigma_rad, {1e-4, 10.0});
   v("start_wait_s", c.start_wait_s, {0.0, 100.0});
   v("map_voxel_m", c.map_voxel_m, {0.005, 1.0});
@@ -101,6 +103,7 @@ class Slam {
   void Keep(const Observation& observation, const Pose& T_map_base);
   void Record(Time stamp, const Pose& T_map_base);
   void WatchWheels(const Pose& motion, const Pose& T_prior_registered);
+  bool GivesUp(Time stamp, bool stands);
   bool IsRevisit(const Pose& T_map_base) const;
   void RecallFormer(const Pose& T_map_base);
   void SearchLoop(const Observation& observation, Pose& T_map_base);
@@ -125,6 +128,7 @@ class Slam {
   int lost_frames_ = 0;
   double path_m_ = 0.0, pruned_at_m_ = 0.0, slip_ = 0.0;
   std::optional<Time> first_stamp_;
+  std::optional<Time> lost_standing_;   // since then
   std::optional<double> map_turn_rad_;  // yaw in the map less the heading's
   Pose T_odom_last_ = Pose::Identity();
 };

@@ -102,6 +102,28 @@ TEST(Slam, MapsNothingItDidNotRecognise) {
   EXPECT_EQ(slam.keyframes().size(), 1u);
 }
 
+TEST(Slam, MapsOnWhereItStandsLostForThreeSeconds) {
+  Slam slam({});
+  ASSERT_TRUE(slam.Update(InRoom(Pose::Identity(), 0.0)));
+  Observation elsewhere = InRoom(Pose::Identity(), 0.0);
+  for (Point& point : elsewhere.points_base) point.position.z() += 5.0f;
+  elsewhere.T_odom_base = FromXyYaw(0.5, 0.0, 0.0);
+  for (int i = 1; i <= 60; ++i) {
+    elsewhere.stamp = FromSeconds(0.05 * i);
+    ASSERT_TRUE(slam.Update(elsewhere));
+    EXPECT_EQ(slam.lost_frames(), i);
+  }
+  for (int i = 61; i <= 63; ++i) {
+    elsewhere.stamp = FromSeconds(0.05 * i);
+    const auto pose = slam.Update(elsewhere);
+    ASSERT_TRUE(pose);
+    EXPECT_NEAR(pose->translation().x(), 0.5, 0.01);
+  }
+  EXPECT_EQ(slam.lost_frames(), 0);
+  EXPECT_TRUE(slam.last().converged);
+  EXPECT_EQ(slam.keyframes().size(), 2u);
+}
+
 TEST(Slam, KeepsItsDirectionWhenAHeadingComesLate) {
   Slam slam({});
   Observation observation = InRoom(Pose::Identity(), 0.0);
