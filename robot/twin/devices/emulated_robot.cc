@@ -9,7 +9,7 @@
 namespace merlin {
 namespace {
 
-constexpr double kLowBattery = 0.9;  // of the car's nominal voltage (guess): near the end, the cells' voltage drops fast
+constexpr double kLowBattery = 0.9;  // of the nominal voltage (guess): what is left below it soon is gone
 constexpr auto kNap = std::chrono::microseconds(500);
 constexpr Duration kCaughtUp = std::chrono::milliseconds(20);  // with what setting up has taken
 
