@@ -7,6 +7,7 @@
 #include "robot/description/description.h"
 #include "robot/hardware/hardware_robot.h"
 #include "robot/twin/devices/emulated_robot.h"
+#include "tests/robot/cable.h"
 #include "tests/robot/hal/conformance.h"
 #include "tests/scenarios/judge/temporary_folder.h"
 #include "tests/sim/car_world.h"
@@ -29,10 +30,10 @@ TwinOptions Options(const sim::TemporaryFile& room) {
   return options;
 }
 
-HardwareConfig DevicesOf(const EmulatedRobot& emulated) {
+HardwareConfig DevicesOf(const EmulatedRobot& emulated, const std::filesystem::path& drive_port) {
   HardwareConfig config;
   config.clock.watchdog_s = 10.0;  // a test may take its time between two waits
-  config.drive.serial = {emulated.drive_port(), EmulatedRobot::kDriveBaud};
+  config.drive.serial = {drive_port, EmulatedRobot::kDriveBaud};
   config.compass.emplace().serial = {*emulated.compass_port(), 9600};
   config.depth.pmd.library = PMD_LIBRARY;
   config.depth.pmd.source_argument = emulated.depth_socket();
@@ -45,10 +46,11 @@ class RiggedEmulation final : public Rigged {
       : room_("room.xml", sim::Room(kRoom)),
         options_(Options(room_)),
         clock_({.watchdog_s = 10.0}, Time::max()),
-        emulated_(options_, sockets_.path(), clock_) {
+        emulated_(options_, sockets_.path(), clock_),
+        drive_cable_(emulated_.drive_port(), EmulatedRobot::kDriveBaud, sockets_.path() / "drive") {
     emulated_.Start();
     hardware_ = std::make_unique<HardwareRobot>(
-        DevicesOf(emulated_),
+        DevicesOf(emulated_, drive_cable_.port()),
         HardwareCameras{.depth = {options_.depth.sheet, options_.world.car.T_base_depth, options_.depth.rate_hz},
                         .depth_settings = options_.depth.settings},
         clock_);
@@ -62,6 +64,11 @@ class RiggedEmulation final : public Rigged {
   double start_yaw_rad() override { return 0.0; }
   double compass_sigma_rad() override { return sim::CompassConfig{}.yaw_noise_rad; }
   Duration slack() override { return std::chrono::milliseconds(150); }
+  bool Unplug() override {
+    drive_cable_.Pull();
+    return true;
+  }
+  void PlugIn() override { drive_cable_.PlugIn(); }
 
  private:
   sim::TemporaryFile room_;
@@ -69,6 +76,7 @@ class RiggedEmulation final : public Rigged {
   TwinOptions options_;
   RealClock clock_;
   EmulatedRobot emulated_;
+  Cable drive_cable_;
   std::unique_ptr<HardwareRobot> hardware_;
 };
 

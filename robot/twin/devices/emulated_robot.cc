@@ -9,6 +9,7 @@
 namespace merlin {
 namespace {
 
+constexpr double kLowBattery = 0.9;  // of the nominal voltage (guess): what is left below it soon is gone
 constexpr auto kNap = std::chrono::microseconds(500);
 constexpr Duration kCaughtUp = std::chrono::milliseconds(20);  // with what setting up has taken
 
@@ -41,7 +42,7 @@ EmulatedRobot::EmulatedRobot(const TwinOptions& options, const std::filesystem::
     : clock_(clock),
       twin_(ForDevices(options)),
       robot_(twin_.robot()),
-      drive_({}, CarOf(twin_), Time(0)),
+      drive_({.battery_low_v = kLowBattery * options.world.car.drivetrain.voltage_max_v}, CarOf(twin_), Time(0)),
       drive_pump_(drive_terminal_, std::make_unique<SerialLine>(kDriveBaud), drive_, kDriveBaud),
       depth_socket_((sockets / "depth.socket").string()),
       depth_(depth_socket_, options.depth.sheet, options.depth.settings, [this](const DepthSettings& settings) {

@@ -24,7 +24,7 @@ struct EmulatedCar {
 
 struct MicrocontrollerEmulatorConfig {
   double state_rate_hz = 50.0;  // [1, 200]; 26 bytes each
-  double battery_low_v = 6.4;   // [0, 60]; of 7.2 V (guess)
+  double battery_low_v = 10.8;  // [0, 60]; below it a state says so; 0.9 of 12 V (guess)
   std::string firmware = "merlin emulator 1";
 };
 

@@ -228,10 +228,101 @@ TEST_P(HalConformance, BrakesAtOnceForANumberThatIsNotFinite) {
   }
 }
 
+// From expiry, for the motor and for the car to stand, and 0.1 s to see it.
+double StandingTime_s(Session& session, double speed_m_s) {
+  return 0.2 + std::abs(speed_m_s) / 2.0 + 0.1 + Seconds(session.rig->slack());
+}
+
+TEST_P(HalConformance, BrakesTheMotorWithin200MillisecondsOfExpiry) {
+  Session session(GetParam());
+  session.Drive(1.5, Go(0.8, 0.0, 1.0));
+  session.robot.drive->Send(Go(0.8, 0.0, 0.1));
+  const Time expiry = session.robot.clock->Now() + FromSeconds(0.1);
+  session.Drive(0.6 + Seconds(session.rig->slack()), std::nullopt);
+  for (const DriveState& state : session.drive) {
+    if (state.stamp > expiry + FromSeconds(0.2) + session.rig->slack()) {
+      EXPECT_TRUE(state.expired);
+    }
+  }
+  EXPECT_TRUE(session.drive.back().expired);
+}
+
+// A command decided long ago, as after a stall of the stack, has expired when it comes.
+TEST_P(HalConformance, StandsInTimeAfterACommandThatHasExpiredWhenItComes) {
+  for (const Duration stale : {Duration(0), Duration::min()}) {
+    Session session(GetParam());
+    session.Drive(1.5, Go(0.8, 0.0, 1.0));
+    session.robot.drive->Send({.speed_m_s = 0.8, .steering_rad = 0.0, .valid_for = stale});
+    session.Drive(StandingTime_s(session, 0.8), std::nullopt);
+    EXPECT_LT(std::abs(Speed_m_s(session)), 0.01) << stale.count();
+    EXPECT_TRUE(session.drive.back().expired) << stale.count();
+  }
+}
+
 TEST_P(HalConformance, ClampsCommandsBeyondTheCarsLimits) {
   Session session(GetParam());
   session.Drive(1.0, Go(0.0, 2.0));
   EXPECT_NEAR(session.drive.back().steering_rad, session.rig->car().steering_max_rad, 0.02);
+}
+
+TEST_P(HalConformance, DrivesNoFasterThanTheCarCanForHugeNumbersAndStopsAfterThem) {
+  constexpr double kHuge = std::numeric_limits<double>::max();
+  for (const double side : {1.0, -1.0}) {
+    Session session(GetParam());
+    // Held for ever, and replaced all the same.
+    session.robot.drive->Send({.speed_m_s = side * kHuge, .steering_rad = 0.0, .valid_for = Duration::max()});
+    session.Drive(1.5, std::nullopt);
+    EXPECT_GT(side * Speed_m_s(session), 0.5 * session.rig->car().drivetrain.speed_max_m_s);
+    EXPECT_LT(side * Speed_m_s(session), 1.1 * session.rig->car().drivetrain.speed_max_m_s);
+    session.robot.drive->Send({.speed_m_s = 0.0, .steering_rad = -side * kHuge, .valid_for = FromSeconds(2.0)});
+    session.Drive(1.9, std::nullopt);
+    EXPECT_LT(std::abs(Speed_m_s(session)), 0.01);
+    EXPECT_NEAR(session.drive.back().steering_rad, -side * session.rig->car().steering_max_rad, 0.02);
+  }
+}
+
+// Thousands of commands between two looks at the devices, as from a stack that has gone wild: the last counts, no queue
+// of old ones is worked off before it, and it expires like any other.
+TEST_P(HalConformance, TakesTheNewestOfAFloodAndItExpires) {
+  Session session(GetParam());
+  const auto flood = [&](const DriveCommand& newest) {
+    for (int i = 0; i < 2000; ++i) session.robot.drive->Send(Go(i % 2 == 0 ? -0.8 : 0.8, 0.3, 10.0));
+    session.robot.drive->Send(newest);
+  };
+  for (int i = 0; i < 50; ++i) {
+    flood(Go(0.5, 0.0));
+    session.Drive(0.02, std::nullopt);
+  }
+  flood(Go(0.5, 0.0, 0.5));
+  session.Drive(0.4, std::nullopt);
+  EXPECT_NEAR(Speed_m_s(session), 0.5, 0.08);
+  EXPECT_NEAR(session.drive.back().steering_rad, 0.0, 0.02);
+  session.Drive(0.1 + StandingTime_s(session, 0.5), std::nullopt);
+  EXPECT_LT(std::abs(Speed_m_s(session)), 0.01);
+  EXPECT_TRUE(session.drive.back().expired);
+}
+
+// The command in force would hold for long: it is the other end that must brake, by itself.
+TEST_P(HalConformance, StandsInTimeWithItsPlugPulledAndDrivesAgainOncePluggedIn) {
+  Session session(GetParam());
+  session.Drive(1.5, Go(0.8, 0.0, 10.0));
+  const double speed_m_s = Speed_m_s(session);
+  const std::int64_t pulled = session.drive.back().encoder_counts;
+  if (!session.rig->Unplug()) GTEST_SKIP() << "no plug to pull";
+  session.Drive(StandingTime_s(session, speed_m_s), Go(0.8, 0.0, 10.0));
+  EXPECT_EQ(session.robot.drive->Status().health, DeviceStatus::Health::kAbsent);
+  session.robot.drive->Send({});
+  session.rig->PlugIn();
+  for (int i = 0; i < 200 && session.robot.drive->Status().health != DeviceStatus::Health::kOk; ++i)
+    session.Drive(0.1, std::nullopt);
+  session.drive.clear();
+  session.Drive(0.3, std::nullopt);
+  EXPECT_LT(std::abs(Speed_m_s(session)), 0.01);
+  // What it may have gone: 0.2 s and the brakes, from a little after the last state.
+  const double gone_m = session.Metres(session.drive.back().encoder_counts - pulled);
+  EXPECT_LT(gone_m, speed_m_s * (0.2 + 0.1 + Seconds(session.rig->slack())) + speed_m_s * speed_m_s / 4.0);
+  session.Drive(1.0, Go(0.5, 0.0));
+  EXPECT_NEAR(Speed_m_s(session), 0.5, 0.08);
 }
 
 // The wall is square ahead: turned to the left, what is on the left is farther.

@@ -24,6 +24,9 @@ class Rigged {
   virtual double compass_sigma_rad() = 0;
   // How late threads and lines may make what happens; zero where time waits for the test.
   virtual Duration slack() { return Duration(0); }
+  // Pulls the drive's plug and puts it back. False: there is none, nothing lies between the calls and the car.
+  virtual bool Unplug() { return false; }
+  virtual void PlugIn() {}
 };
 
 struct Plug {

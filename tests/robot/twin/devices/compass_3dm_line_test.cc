@@ -1,8 +1,10 @@
 // The 3DM's two ends, joined by a cable at 9600 baud. Time and bytes are injected.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include "robot/hardware/compass_3dm_host.h"
 #include "robot/twin/devices/compass_3dm_emulator.h"
@@ -102,6 +104,40 @@ TEST(Compass3dmLine, TellsSilenceGarbageAndAMissingPort) {
   EXPECT_EQ(line.host.status().health, Health::kOk);
   line.host.Disconnected(line.now);
   EXPECT_EQ(line.host.status().health, Health::kAbsent);
+}
+
+// Halves, replies twice, and replies that come a poll too late: no reading of them, or the very one that was asked for.
+TEST(Compass3dmLine, NeverTakesAPartialADoubledOrALateReplyForAnother) {
+  for (const int kind : {0, 1, 2}) {
+    Line line;
+    Bytes held;
+    Time due{0};
+    int calls = 0;
+    line.fault = [&](const Bytes& received) {
+      if (received.empty() && (held.empty() || line.now < due)) return Bytes();
+      if (kind == 0) return ++calls % 2 == 0 ? received : Bytes();  // holes
+      if (kind == 1) {
+        Bytes twice = received;
+        twice.insert(twice.end(), received.begin(), received.end());
+        return twice;
+      }
+      if (received.empty()) return std::exchange(held, {});
+      if (held.empty()) due = line.now + milliseconds(80);
+      held.insert(held.end(), received.begin(), received.end());
+      return Bytes();
+    };
+    line.body.yaw_rad = 1.0;
+    line.Run(milliseconds(1000));
+    line.body.yaw_rad = -1.0;
+    line.Run(milliseconds(1000));
+    for (const CompassReading& reading : line.readings)
+      EXPECT_TRUE(std::abs(reading.yaw_rad - 1.0) < kCount_rad || std::abs(reading.yaw_rad + 1.0) < kCount_rad) << kind;
+    line.fault = {};
+    line.Run(milliseconds(300));
+    ASSERT_FALSE(line.readings.empty());
+    EXPECT_NEAR(line.readings.back().yaw_rad, -1.0, kCount_rad);
+    EXPECT_EQ(line.host.status().health, Health::kOk);
+  }
 }
 
 TEST(Compass3dmEmulator, HeedsOnlyAQuestionAskedInOrderAndInTime) {

@@ -1,14 +1,11 @@
-// Both ends of the microcontroller's line, host (the shipped driver without its thread) and emulator, joined by a cable
-// with its timing and by faults. Time and bytes are injected: nothing sleeps.
+// Both ends of the microcontroller's line, in front of the simplest car.
+#include "tests/robot/twin/devices/microcontroller_line.h"
+
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
-#include <random>
 
-#include "robot/hardware/microcontroller_host.h"
 #include "robot/twin/devices/radio.h"
-#include "robot/twin/devices/serial_line.h"
 #include "tests/robot/twin/devices/toy_car.h"
 
 namespace merlin {
@@ -16,54 +13,13 @@ namespace {
 
 using std::chrono::milliseconds;
 using Health = DeviceStatus::Health;
-constexpr Duration kTick = milliseconds(1);
-constexpr int kBaud = 57600;
+using Line = MicrocontrollerLine<ToyCar>;
+constexpr int kBaud = Line::kBaud;
 
 const DriveCommand kGo{.speed_m_s = 0.5, .steering_rad = 0.1, .valid_for = milliseconds(300)};
 
-// What a fault makes of the bytes that an end has just sent.
-using Fault = std::function<Bytes(Time now, Side from, const Bytes& sent)>;
-
-class Line {
- public:
-  explicit Line(std::unique_ptr<Channel> channel = std::make_unique<SerialLine>(kBaud), Time start = Time(0))
-      : now(start), channel_(std::move(channel)) {
-    car.Step(now);
-    SwitchOn();
-    host.Connected(now);
-  }
-
-  // The stack renews the command every 50 ms, if it has one.
-  void Run(Duration duration, const std::optional<DriveCommand>& command = std::nullopt) {
-    for (const Time end = now + duration; now < end; now += kTick) {
-      car.Step(now);
-      if (command && now % milliseconds(50) == Duration(0)) host.Command(*command, now - host_started);
-      host.Receive(now - host_started, channel_->Take(Side::kHost, now));
-      Put(Side::kHost, host.Send(now - host_started));
-      micro->Receive(now, channel_->Take(Side::kDevice, now));
-      Put(Side::kDevice, micro->Send(now));
-      while (const auto state = host.states.Take()) states.push_back(*state);
-      if (!car.braked()) last_driven = now;
-    }
-  }
-  void SwitchOn() {
-    micro = std::make_unique<MicrocontrollerEmulator>(MicrocontrollerEmulatorConfig{}, car.Wired(), now);
-  }
-
-  Time now, last_driven{0}, host_started{0};
-  ToyCar car;
-  MicrocontrollerHost host{MicrocontrollerConfig{.serial = {.port = "line", .baud = kBaud}}};
-  std::unique_ptr<MicrocontrollerEmulator> micro;
-  std::vector<DriveState> states;
-  Fault fault;
-
- private:
-  void Put(Side from, const Bytes& sent) { channel_->Put(from, now, fault ? fault(now, from, sent) : sent); }
-  std::unique_ptr<Channel> channel_;
-};
-
 // Drives, then the fault begins while the stack goes on commanding (or not): braked 200 ms later?
-void ExpectBraked(Line& line, const Fault& fault, std::optional<DriveCommand> command) {
+void ExpectBraked(Line& line, const LineFault& fault, std::optional<DriveCommand> command) {
   line.Run(milliseconds(1000), kGo);
   ASSERT_FALSE(line.car.braked());
   line.fault = fault;
@@ -84,7 +40,7 @@ TEST(MicrocontrollerLine, DrivesAndReports) {
   EXPECT_NEAR(static_cast<double>(last.encoder_counts), 0.5 * Seconds(last.stamp) * ToyCar::kCountsPerMetre, 10.0);
   EXPECT_NEAR(last.steering_rad, 0.1, 1e-9);
   EXPECT_NEAR(last.current_a, 1.5, 1e-9);
-  EXPECT_NEAR(last.battery_v, 7.2, 1e-9);
+  EXPECT_NEAR(last.battery_v, 12.0, 1e-9);
   EXPECT_FALSE(last.expired);
 }
 
@@ -134,24 +90,24 @@ TEST(MicrocontrollerLine, BrakesForNumbersThatAreNotFinite) {
   }
 }
 
+TEST(MicrocontrollerLine, BrakesForCommandsThatHaveExpiredWhenTheyCome) {
+  for (const Duration stale : {Duration(0), Duration(-1), Duration::min()}) {
+    Line line;
+    ExpectBraked(line, {}, DriveCommand{0.5, 0.0, stale});
+    EXPECT_TRUE(line.states.back().expired);
+  }
+}
+
 TEST(MicrocontrollerLine, BrakesWhenNothingArrives) {
   Line line;
-  ExpectBraked(
-      line, [](Time, Side, const Bytes&) { return Bytes(); }, kGo);
+  ExpectBraked(line, Silence(), kGo);
   EXPECT_EQ(line.host.status().health, Health::kSilent);
   EXPECT_EQ(line.host.Complaint(), "microcontroller on line: it is silent");
 }
 
 TEST(MicrocontrollerLine, BrakesWhenOnlyGarbageArrives) {
-  std::mt19937 random(1);
   Line line;
-  ExpectBraked(
-      line,
-      [&](Time, Side, Bytes sent) {
-        for (std::uint8_t& byte : sent) byte = static_cast<std::uint8_t>(random());
-        return sent;
-      },
-      kGo);
+  ExpectBraked(line, Garbage(), kGo);
   EXPECT_EQ(line.host.status().health, Health::kFaulty);
   EXPECT_GT(line.host.status().garbage, 100u);
   EXPECT_NE(line.host.Complaint().find("nothing it sends can be read; is it set to 57600 baud?"), std::string::npos);
@@ -159,43 +115,17 @@ TEST(MicrocontrollerLine, BrakesWhenOnlyGarbageArrives) {
 
 TEST(MicrocontrollerLine, BrakesWhenOnlyHalvesOfFramesArrive) {
   Line line;
-  ExpectBraked(
-      line, [](Time, Side, const Bytes& sent) { return Bytes(sent.begin(), sent.begin() + sent.size() / 2); }, kGo);
+  ExpectBraked(line, Halves(), kGo);
 }
 
-// The last command again and again, as a stuck buffer would.
 TEST(MicrocontrollerLine, BrakesWhenOnlyDuplicatesOfACommandArrive) {
   Line line;
-  Bytes last;
-  Time repeat{0};
-  ExpectBraked(
-      line,
-      [&](Time now, Side from, const Bytes& sent) {
-        if (from == Side::kDevice) return sent;
-        if (last.empty()) last = sent;
-        if (last.empty() || now < repeat) return Bytes();
-        repeat = now + milliseconds(20);
-        return last;
-      },
-      DriveCommand{0.5, 0.0, milliseconds(150)});
+  ExpectBraked(line, Duplicates(), DriveCommand{0.5, 0.0, milliseconds(150)});
 }
 
 TEST(MicrocontrollerLine, BrakesWhenCommandsComeLate) {
   Line line;
-  std::deque<std::pair<Time, Bytes>> held;
-  ExpectBraked(
-      line,
-      [&](Time now, Side from, const Bytes& sent) {
-        if (from == Side::kDevice) return sent;
-        held.emplace_back(now + milliseconds(400), sent);  // longer than they hold
-        Bytes due;
-        while (!held.empty() && held.front().first <= now) {
-          due.insert(due.end(), held.front().second.begin(), held.front().second.end());
-          held.pop_front();
-        }
-        return due;
-      },
-      kGo);
+  ExpectBraked(line, Late(milliseconds(400)), kGo);  // longer than they hold
 }
 
 TEST(MicrocontrollerLine, IsNotDisturbedByDuplicatesBetweenGoodFrames) {
@@ -215,7 +145,7 @@ TEST(MicrocontrollerLine, SurvivesAFloodOfCommands) {
   Line line;
   for (int i = 0; i < 1000; ++i) {
     for (int k = 0; k < 100; ++k) line.host.Command(kGo, line.now);
-    line.Run(kTick);
+    line.Run(Line::kTick);
   }
   EXPECT_FALSE(line.car.braked());
   line.host.Command({}, line.now);
@@ -224,13 +154,41 @@ TEST(MicrocontrollerLine, SurvivesAFloodOfCommands) {
   EXPECT_LE(line.last_driven - begin, milliseconds(20));  // no queue of old ones before it
 }
 
+TEST(MicrocontrollerLine, LetsTheNewestOfAFloodExpire) {
+  Line line;
+  line.Run(milliseconds(1000), kGo);
+  for (int k = 0; k < 5000; ++k) line.host.Command({0.5, 0.1, std::chrono::hours(1)}, line.now);
+  line.host.Command(kGo, line.now);
+  const Time begin = line.now;
+  line.Run(milliseconds(1000));
+  EXPECT_NEAR(Seconds(line.last_driven - begin), 0.3, 0.01);
+}
+
+// A byte a millisecond: a frame all the same.
+TEST(MicrocontrollerLine, JoinsWhatComesInPieces) {
+  Line line;
+  std::deque<std::uint8_t> held;
+  line.fault = [&held](Time, Side from, const Bytes& sent) {
+    if (from == Side::kDevice) return sent;
+    held.insert(held.end(), sent.begin(), sent.end());
+    if (held.empty()) return Bytes();
+    const Bytes one{held.front()};
+    held.pop_front();
+    return one;
+  };
+  line.Run(milliseconds(2000), kGo);
+  EXPECT_FALSE(line.car.braked());
+  EXPECT_EQ(line.micro->counters().garbage_bytes, 0u);
+  EXPECT_GT(line.states.back().encoder_counts, 900);
+}
+
 TEST(MicrocontrollerLine, BrakesWhenThePortGoesAndDrivesAgainWhenItComesBack) {
   Line line;
   line.Run(milliseconds(1000), kGo);
   line.host.Disconnected(line.now);
   EXPECT_EQ(line.host.status().health, Health::kAbsent);
   EXPECT_EQ(line.host.status().since, line.now);
-  line.fault = [](Time, Side, const Bytes&) { return Bytes(); };
+  line.fault = Silence();
   const Time begin = line.now;
   line.Run(milliseconds(1000), kGo);
   EXPECT_LE(line.last_driven - begin, milliseconds(200));
@@ -297,13 +255,27 @@ TEST(MicrocontrollerLine, SaysWhichVersionIsWrong) {
   EXPECT_EQ(line.host.Complaint(), "microcontroller on line: it speaks version 2 of the protocol; expected 1");
 }
 
+TEST(MicrocontrollerEmulator, WarnsOfABatteryBelowItsLimit) {
+  ToyCar car;
+  MicrocontrollerEmulator micro({}, car.Wired(), Time(0));
+  microcontroller::Decoder<microcontroller::ToHost> decoder;
+  Time now{0};
+  for (const auto& [battery_v, low] :
+       std::vector<std::pair<double, bool>>{{12.0, false}, {10.8, false}, {10.7, true}}) {
+    car.battery_v = battery_v;
+    const auto received = decoder.Feed(micro.Send(now += milliseconds(20)));
+    ASSERT_EQ(received.size(), 1u);
+    EXPECT_EQ(std::get<microcontroller::State>(received[0].message).low_battery, low) << battery_v;
+  }
+}
+
 // 20 states a second and a command every 50 ms share one channel: slow and lossy, but never unsafe.
 TEST(MicrocontrollerLine, DrivesOverTheRadioAndBrakesWhenItIsLost) {
   Line line(std::make_unique<Radio>(RadioConfig{.baud = kBaud, .packet_loss = 0.05}, 1));
   line.Run(milliseconds(5000), kGo);
   EXPECT_GT(line.states.size(), 50u);
   EXPECT_GT(line.states.back().encoder_counts, 1500);  // of 2500 without any loss
-  line.fault = [](Time, Side, const Bytes&) { return Bytes(); };
+  line.fault = Silence();
   const Time begin = line.now;
   line.Run(milliseconds(1000), kGo);
   EXPECT_LE(line.last_driven - begin, milliseconds(200));

@@ -26,7 +26,7 @@ class ToyCar {
             .encoder_counts = counts_at_start + std::llround(kCountsPerMetre * metres_),
             .steering_rad = command_.steering_rad,
             .current_a = 1.5,
-            .battery_v = 7.2,
+            .battery_v = battery_v,
             .expired = braked()};
   }
   EmulatedCar Wired() {
@@ -38,6 +38,7 @@ class ToyCar {
 
   std::int64_t counts_at_start = 0;
   double pan_rad = 0.0;
+  double battery_v = 12.0;
 
  private:
   Time now_{0}, expires_{0};

@@ -1,0 +1,39 @@
+// Helpers for targets that read texts.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "robot/types/error.h"
+#include "tests/fuzz/target.h"
+
+namespace merlin::fuzz {
+
+inline Bytes ToBytes(std::string_view text) { return Bytes(text.begin(), text.end()); }
+
+inline std::string_view ToText(const std::uint8_t* data, std::size_t size) {
+  return {reinterpret_cast<const char*>(data), size};
+}
+
+// What readers trip over, for seeds: the driver puts seeds into one another.
+inline void AddWords(std::vector<Bytes>& seeds) {
+  for (const char* word : {"nan", "inf", "-1", "0", "1e308", "1e-320", "-", "99999999999999999999", "\n", " ", "#"})
+    seeds.push_back(ToBytes(word));
+}
+
+// The reader's answer; none where it refuses, which it does in one sentence that begins with the file's name.
+template <class Parse>
+auto TakenOrRefused(Parse parse, std::string_view text) -> std::optional<decltype(parse(text, std::string()))> {
+  try {
+    return parse(text, std::string("f.txt"));
+  } catch (const InputError& error) {
+    const std::string_view what = error.what();
+    Expect(what.starts_with("f.txt"), "a refusal names the file");
+    Expect(what.find('\n') == std::string_view::npos, "a refusal is one line");
+    return std::nullopt;
+  }
+}
+
+}  // namespace merlin::fuzz
