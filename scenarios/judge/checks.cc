@@ -30,9 +30,9 @@ struct Collector {
   }
   void operator()(std::string_view name, const std::array<std::optional<double>, 2>& pair) {
     (*this)(name, pair[0]);
-    (*this)(name, pair[1]);
-    figures.end()[-2].values.push_back(figures.back().values.front());
-    figures.pop_back();
+    (*this)(fmt::format("{}.0", name), pair[0]);
+    (*this)(fmt::format("{}.1", name), pair[1]);
+    figures.end()[-3].values.push_back(figures.back().values.front());
   }
   void operator()(std::string_view name, const StackTimes& times) {
     (*this)(fmt::format("{}.p50", name), times.p50);

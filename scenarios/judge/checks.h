@@ -9,7 +9,8 @@
 
 namespace merlin {
 
-// A line of a scenario's checks: a metric's name (of a nested one "stack_ms.p99") and "_max" or "_min".
+// A line of a scenario's checks: a metric's name (of a nested one "stack_ms.p99", of the first of two values
+// "map_size_m.0") and "_max" or "_min".
 struct CheckLimit {
   std::string name;
   double limit = 0.0;

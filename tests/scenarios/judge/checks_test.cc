@@ -49,6 +49,9 @@ TEST(Evaluate, WantsBothValuesOfAMetricOfTwo) {
   EXPECT_EQ(EvaluateOne("map_size_error_percent_min", 0, metrics).value, 0.5);
   metrics.map_size_error_percent = {0.5, std::nullopt};
   EXPECT_FALSE(EvaluateOne("map_size_error_percent_max", 2, metrics).pass);
+  EXPECT_TRUE(EvaluateOne("map_size_error_percent.0_max", 0.5, metrics).pass);
+  EXPECT_FALSE(EvaluateOne("map_size_error_percent.0_max", 0.4, metrics).pass);
+  EXPECT_FALSE(EvaluateOne("map_size_error_percent.1_max", 2, metrics).pass);
 }
 
 TEST(Evaluate, ReachesNestedAndObstacleFigures) {
