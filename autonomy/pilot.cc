@@ -91,12 +91,7 @@ Pilot::Pursuit Pilot::Pursue(const std::vector<Eigen::Vector2d>& path_base) cons
   Pursuit pursuit;
   pursuit.steering_rad =
       std::clamp(std::atan(car_.wheelbase_m * curvature_1_m), -car_.steering_max_rad, car_.steering_max_rad);
-  const double bend_1_m = std::tan(pursuit.steering_rad) / car_.wheelbase_m;  // of the arc it can really drive
-  Pose T_base_ahead = Pose::Identity();
-  for (double s = 0.0; s < far->norm(); s += kPathStep_m) {
-    pursuit.way_base.push_back(T_base_ahead.translation().head<2>());
-    T_base_ahead = T_base_ahead * FromXyYaw(kPathStep_m, 0.0, kPathStep_m * bend_1_m);
-  }
+  pursuit.way_base = ArcAhead(car_, pursuit.steering_rad, far->norm());
   pursuit.way_base.insert(pursuit.way_base.end(), far, path_base.end());
   return pursuit;
 }
