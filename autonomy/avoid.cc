@@ -2,30 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace merlin {
-
-Footprint FootprintOf(const CarDescription& car) {
-  Footprint footprint;
-  std::map<std::string, Pose> T_base_link;
-  for (const CarLink& link : car.links) {
-    const auto parent = T_base_link.find(link.parent);
-    const Pose T = parent == T_base_link.end() ? Pose::Identity() : parent->second * link.T_parent_link;
-    T_base_link[link.name] = T;
-    for (const CarShape& shape : link.collision) {
-      if (shape.kind == CarShape::Kind::kMesh) continue;
-      Eigen::Vector3d half = 0.5 * shape.size_m;
-      if (shape.kind == CarShape::Kind::kSphere) half.setConstant(shape.size_m.x());
-      if (shape.kind == CarShape::Kind::kCylinder) half = {shape.size_m.x(), shape.size_m.x(), 0.5 * shape.size_m.y()};
-      const Pose T_base_shape = T * shape.T_link_shape;
-      const Eigen::Vector3d reach = T_base_shape.linear().cwiseAbs() * half;
-      footprint.front_m = std::max(footprint.front_m, T_base_shape.translation().x() + reach.x());
-      footprint.half_width_m = std::max(footprint.half_width_m, std::abs(T_base_shape.translation().y()) + reach.y());
-    }
-  }
-  return footprint;
-}
 
 std::optional<double> Avoid::SeenNow_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base) const {
   const auto ahead = [this](const Eigen::Vector3f& d) {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "perception/observation.h"
-#include "robot/types/car.h"
 #include "robot/types/config.h"
+#include "robot/types/footprint.h"
 
 namespace merlin {
 
@@ -38,13 +38,6 @@ void Visit(Visitor& v, AvoidConfig& c) {
   v("saturated_half_angle_rad", c.saturated_half_angle_rad, {0.0, 1.6});
   v("aside_max_rad", c.aside_max_rad, {0.0, 1.6});
 }
-
-// What of the car touches first, from base_link, over its collision shapes (boxes, cylinders, spheres; meshes are left out).
-struct Footprint {
-  double front_m = 0.0;
-  double half_width_m = 0.0;
-};
-Footprint FootprintOf(const CarDescription& car);
 
 class Avoid {
  public:

@@ -56,7 +56,7 @@ std::optional<Observation> Pipeline::Process(DepthFrame frame) {
   if (color_ && rig_.color && std::abs(Seconds(observation.stamp - color_->stamp)) <= config_.color_age_max_s) {
     const Pose T_odom_basecolor = *OdomAt(color_->stamp), T_base_color = *CameraAt(rig_.T_base_color, color_->stamp);
     const Pose T_color_base = T_base_color.inverse() * T_odom_basecolor.inverse() * *T_odom_base;
-    ColorPoints(observation.points_base, *color_, rig_.color->camera, T_color_base);
+    ColorPoints(observation.points_base, *color_, rig_.color->camera, T_color_base, 1.0 / rig_.depth.camera.fx_px);
   }
   return observation;
 }

@@ -1,5 +1,6 @@
 #include "perception/project.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +10,12 @@ double RangeSigma_m(double amplitude_e, const DepthCameraSheet& sheet, const Dep
   const double scale_m = kSpeedOfLight_m_s / (4.0 * std::numbers::sqrt2 * std::numbers::pi * settings.frequency_hz);
   const double signal_e = amplitude_e / sheet.Contrast(settings.frequency_hz);
   return scale_m * std::sqrt(signal_e + 2.0 * sheet.read_noise_e * sheet.read_noise_e) / amplitude_e;
+}
+
+double FreeRange_m(double amplitude_e, const DepthCameraSheet& sheet, const DepthSettings& settings) {
+  constexpr double kDarkest = 0.05;
+  const double least_e = std::max(sheet.low_signal_amplitude_e, amplitude_e);
+  return std::min(std::sqrt(kDarkest * sheet.LampAmplitude_e_m2(settings) / least_e), UnambiguousRange_m(settings));
 }
 
 std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera) {
@@ -25,8 +32,15 @@ void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, con
   observation.camera_base = T.translation();
   observation.rejections = depth.counts;
   observation.points_base.clear();
+  observation.free_base.clear();
   observation.saturated_base.clear();
   for (std::size_t i = 0; i < depth.frame.size(); ++i) {
+    // A driver that puts the range of a dark pixel to 0 calls it invalid too.
+    const bool dark = depth.reasons[i] != Rejection::kSaturated && (depth.frame.flags[i] & kLowSignal) != 0;
+    if (dark || depth.reasons[i] == Rejection::kGhost) {
+      const double free_m = FreeRange_m(depth.frame.amplitude[i], sheet, depth.frame.settings);
+      observation.free_base.push_back(T * (rays[i] * static_cast<float>(free_m)));
+    }
     if (depth.reasons[i] == Rejection::kSaturated) observation.saturated_base.push_back(T.linear() * rays[i]);
     if (depth.reasons[i] != Rejection::kNone) continue;
     Point point;

@@ -30,7 +30,7 @@ DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const Percep
       integration_(perception.integration),
       period_(FromSeconds(1.0 / robot.depth->Info().rate_hz)),
       pipeline_(RigOf(robot, car), perception),
-      slam_(slam),
+      slam_(slam, FootprintOf(car)),
       pilot_(car, task, pilot),
       energy_(car, pilot.energy),
       arbiter_(car, pilot.avoid, pilot.arbitrate),

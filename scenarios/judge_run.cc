@@ -21,8 +21,8 @@ std::vector<MapPoint> MapPoints(const Slam& slam, int points_min) {
   for (const Voxel& voxel : map.voxels()) {
     if (voxel.count < points_min) continue;
     MapPoint point{.p_map = voxel.mean};
-    if (voxel.colored > 0)
-      for (int c = 0; c < 3; ++c) point.rgb[c] = static_cast<std::uint8_t>(voxel.bgr_sum[2 - c] / voxel.colored + 0.5);
+    if (voxel.has_color())
+      for (int c = 0; c < 3; ++c) point.rgb[c] = static_cast<std::uint8_t>(voxel.bgr()[2 - c] + 0.5);
     points.push_back(point);
   }
   return points;

@@ -5,8 +5,16 @@
 #include <vector>
 
 #include "perception/observation.h"
+#include "slam/map/clear_view.h"
 
 namespace merlin {
+
+// How far a frame saw, and from where.
+struct Sight {
+  Time stamp{0};
+  Pose T_keyframe_base = Pose::Identity();
+  ClearView view;
+};
 
 struct Keyframe {
   Time stamp{0};
@@ -17,6 +25,7 @@ struct Keyframe {
   double yaw_sigma_rad = 0.0;
   std::vector<Point> points_base;
   Eigen::Vector3f camera_base{0, 0, 0};
+  std::vector<Sight> sights;                     // its own, and the last few while the car stood here
   double in_local_map_m = 0.0;                   // path at which its points were last put into the local map
 };
 

@@ -3,18 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slam/map/moved_away.h"
+
 namespace merlin {
 namespace {
 
 constexpr int kRecallAtOnce = 2;       // former key frames put back into the local map a frame: it keeps up at 4 m/s
 constexpr double kRecall_m = 4.0;      // of views whose middles are nearer than this
 constexpr double kStands_m = 1e-3;     // from one frame to the next
+constexpr double kSightsApart_s = 0.2; // of a car that stands
+constexpr std::size_t kSights = 4;     // its key frame's, and the last three: as many as decide that something has gone
 constexpr double kLate_m = 1.0;        // what was seen on the last metre looks for loops
+
+ClearView ViewOf(const Observation& observation) {
+  return {observation.points_base, observation.free_base, observation.camera_base};
+}
 
 }  // namespace
 
-Slam::Slam(const SlamConfig& config)
-    : config_(config), local_(config.local), occupancy_(config.occupancy), closer_(config.loop) {}
+Slam::Slam(const SlamConfig& config, const Footprint& footprint)
+    : config_(config), footprint_(footprint), local_(config.local), occupancy_(config.occupancy), closer_(config.loop) {}
 
 PosePrior Slam::Predict(const Observation& observation) const {
   const Pose motion = T_odom_last_.inverse() * observation.T_odom_base;
@@ -65,11 +73,13 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   if (last_.converged) WatchWheels(motion, prior.T_map_base.inverse() * T_map_base);
   // The first key frame must be something to hold on to; later ones must have held on to it.
   const bool sees = static_cast<int>(source.size()) >= config_.icp.inliers_min;
-  const bool restarts = GivesUp(observation.stamp, motion.translation().norm() < kStands_m) && sees;
+  const bool stands = motion.translation().norm() < kStands_m;
+  const bool restarts = GivesUp(observation.stamp, stands) && sees;
   if (restarts) lost_frames_ = 0;
   const bool trusted = keyframes_.empty() ? sees : last_.converged || restarts;
   if (trusted) {
     Keep(observation, T_map_base);
+    if (stands) Watch(observation, T_map_base);
     if (closer_.IsDue(path_m_)) SearchLoop(observation, T_map_base);
     if (closer_.KnowsThePlace(path_m_)) RecallFormer(T_map_base);
   }
@@ -123,10 +133,20 @@ void Slam::Keep(const Observation& observation, const Pose& T_map_base) {
                     .yaw_sigma_rad = observation.yaw_sigma_rad,
                     .points_base = observation.points_base,
                     .camera_base = observation.camera_base,
+                    .sights = {{observation.stamp, Pose::Identity(), ViewOf(observation)}},
                     .in_local_map_m = path_m_};
   if (map_turn_rad_ && std::isfinite(observation.yaw_sigma_rad))
     keyframe.yaw_rad = WrapPi(observation.yaw_rad + *map_turn_rad_);
   keyframes_.push_back(std::move(keyframe));
+}
+
+// What comes and goes before a car that stands is news, though it is no place for another key frame.
+void Slam::Watch(const Observation& observation, const Pose& T_map_base) {
+  Keyframe& keyframe = keyframes_.back();
+  std::vector<Sight>& sights = keyframe.sights;
+  if (Seconds(observation.stamp - sights.back().stamp) < kSightsApart_s) return;
+  if (sights.size() == kSights) sights.erase(sights.begin() + 1);
+  sights.push_back({observation.stamp, keyframe.T_map_base.inverse() * T_map_base, ViewOf(observation)});
 }
 
 bool Slam::IsRevisit(const Pose& T_map_base) const {
@@ -203,6 +223,8 @@ VoxelMap Slam::BuildMap() const {
   config.voxel_m = config_.map_voxel_m;
   VoxelMap map(config);
   for (const Keyframe& keyframe : keyframes_) map.Insert(keyframe.points_base, keyframe.T_map_base, 0.0);
+  map.Forget(MovedAway(map.voxels(), keyframes_, footprint_));
+  for (const Keyframe& keyframe : keyframes_) map.Paint(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
   return map;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "perception/observation.h"
+#include "robot/types/footprint.h"
 #include "slam/keyframe.h"
 #include "slam/loop/loop_closer.h"
 #include "slam/map/occupancy_grid.h"
@@ -74,7 +75,8 @@ struct MapPose {
 
 class Slam {
  public:
-  explicit Slam(const SlamConfig& config);
+  // Where the footprint went nothing stands any more; without one nothing is taken from that.
+  explicit Slam(const SlamConfig& config, const Footprint& footprint = {});
 
   // The pose at the observation's stamp; nothing while mapping waits for the heading to settle at the start.
   // The map frame: origin where mapping began, axes along the world's as the compass has them, or, where it has none at
@@ -94,13 +96,15 @@ class Slam {
   double path_m() const { return path_m_; }
   int loops() const { return closer_.loops(); }                   // that join two key frames
 
-  // The whole map: voxels with at least map_points_min points, from all key frames.
+  // The whole map, from all key frames, coloured: without what moved away. Of its voxels those with at least map_points_min
+  // points are meant to be used.
   VoxelMap BuildMap() const;
 
  private:
   PosePrior Predict(const Observation& observation) const;
   bool Begin(const Observation& observation);  // false: it waits for the heading
   void Keep(const Observation& observation, const Pose& T_map_base);
+  void Watch(const Observation& observation, const Pose& T_map_base);
   void Record(Time stamp, const Pose& T_map_base);
   void WatchWheels(const Pose& motion, const Pose& T_prior_registered);
   bool GivesUp(Time stamp, bool stands);
@@ -117,6 +121,7 @@ class Slam {
   };
 
   SlamConfig config_;
+  Footprint footprint_;
   VoxelMap local_;
   OccupancyGrid occupancy_;
   LoopCloser closer_;

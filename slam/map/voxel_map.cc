@@ -9,6 +9,9 @@
 namespace merlin {
 namespace {
 
+constexpr double kNearest_m = 0.05;  // views from nearer count as from there
+constexpr double kGrazing = 0.01;    // cosine; so that whatever was seen has a colour
+
 template <class Function>
 void ForNeighbours(const std::array<std::int32_t, 3>& cell, Function function) {
   for (int dx = -1; dx <= 1; ++dx)
@@ -31,7 +34,7 @@ Voxel& VoxelMap::FindOrAdd(const Cell& cell) {
   if (const std::int32_t index = Find(cell); index >= 0) return voxels_[index];
   voxels_.emplace_back().cell = cell;
   if (2 * voxels_.size() > slots_.size())
-    Rehash(std::max<std::size_t>(1024, 4 * voxels_.size()));
+    MakeTable();
   else
     Enter(static_cast<std::int32_t>(voxels_.size()) - 1);
   return voxels_.back();
@@ -43,8 +46,8 @@ void VoxelMap::Enter(std::int32_t index) {
   slots_[slot] = {voxels_[index].cell, index};
 }
 
-void VoxelMap::Rehash(std::size_t slots) {
-  slots_.assign(std::bit_ceil(slots), {});
+void VoxelMap::MakeTable() {
+  slots_.assign(std::bit_ceil(std::max<std::size_t>(1024, 4 * voxels_.size())), {});
   for (std::size_t i = 0; i < voxels_.size(); ++i) Enter(static_cast<std::int32_t>(i));
 }
 
@@ -64,10 +67,6 @@ void VoxelMap::Insert(std::span<const Point> points_base, const Pose& T_map_base
     voxel.squares += weight * d * d.transpose();
     voxel.last_seen_m = path_m;
     voxel.mean = (Centre(cell) + voxel.sum / voxel.weight).cast<float>();
-    if (point.has_color) {
-      voxel.bgr_sum += Eigen::Vector3d(point.bgr[0], point.bgr[1], point.bgr[2]);
-      ++voxel.colored;
-    }
     touched.push_back(cell);
   }
   std::sort(touched.begin(), touched.end());
@@ -105,7 +104,33 @@ void VoxelMap::UpdateSurface(Voxel& voxel) const {
 
 void VoxelMap::ForgetBefore(double path_m) {
   std::erase_if(voxels_, [path_m](const Voxel& voxel) { return voxel.last_seen_m < path_m; });
-  Rehash(std::max<std::size_t>(1024, 4 * voxels_.size()));
+  MakeTable();
+}
+
+void VoxelMap::Forget(const std::vector<bool>& voxels) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < voxels_.size(); ++i)
+    if (!voxels[i]) voxels_[kept++] = voxels_[i];
+  voxels_.resize(kept);
+  MakeTable();
+}
+
+void VoxelMap::Paint(std::span<const Point> points_base, const Eigen::Vector3f& camera_base, const Pose& T_map_base) {
+  const Eigen::Vector3d camera_map = T_map_base * camera_base.cast<double>();
+  for (const Point& point : points_base) {
+    if (!point.has_color) continue;
+    const Eigen::Vector3d p_map = T_map_base * point.position.cast<double>();
+    if (!InReach(p_map.cast<float>())) continue;
+    const std::int32_t index = Find(CellOf(p_map));
+    if (index < 0) continue;
+    Voxel& voxel = voxels_[static_cast<std::size_t>(index)];
+    const Eigen::Vector3d ray = p_map - camera_map;
+    const double square_m2 = std::max(ray.squaredNorm(), kNearest_m * kNearest_m);
+    const double cosine = voxel.has_normal() ? std::abs(voxel.normal.cast<double>().dot(ray)) / std::sqrt(square_m2) : 1.0;
+    const double weight = std::pow(std::max(cosine, kGrazing) / square_m2, 2);
+    voxel.bgr_sum += weight * Eigen::Vector3d(point.bgr[0], point.bgr[1], point.bgr[2]);
+    voxel.color_weight += weight;
+  }
 }
 
 const Voxel* VoxelMap::Nearest(const Eigen::Vector3f& point_map) const {

@@ -33,12 +33,14 @@ struct Voxel {
   double weight = 0.0;                      // their sum of 1 / sigma^2, 1 at 1 cm
   Eigen::Vector3d sum{0, 0, 0};             // weighted, relative to the voxel's centre
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d bgr_sum{0, 0, 0};
-  int colored = 0;                          // points with colour
+  Eigen::Vector3d bgr_sum{0, 0, 0};         // weighted by color_weight
+  double color_weight = 0.0;                // 0: without colour
   double last_seen_m = 0.0;                 // path length at which a point last fell in
   Eigen::Vector3f mean{0, 0, 0};            // in the map frame
   Eigen::Vector3f normal{0, 0, 0};          // unit, either sign; zero: the neighbourhood is no plane
   bool has_normal() const { return !normal.isZero(); }
+  bool has_color() const { return color_weight > 0.0; }
+  Eigen::Vector3d bgr() const { return bgr_sum / color_weight; }  // [0, 255]; of a voxel with colour
 };
 
 class VoxelMap {
@@ -47,8 +49,14 @@ class VoxelMap {
 
   // path_m: length driven so far, remembered as the voxels' last_seen_m.
   void Insert(std::span<const Point> points_base, const Pose& T_map_base, double path_m);
+  // Colours from the points that have one, for the voxels there are: the best views decide. One weighs (cos(incidence) /
+  // distance^2)^2, which is the square of how many pixels there are to an area, so that few frames from near and in front
+  // outweigh many from far and aslant. A voxel that is no plane counts as facing. camera_base: where the rays begin.
+  void Paint(std::span<const Point> points_base, const Eigen::Vector3f& camera_base, const Pose& T_map_base);
   // Forgets voxels last seen before path_m.
   void ForgetBefore(double path_m);
+  // Forgets those that are true, one a voxel. Normals of what stood beside them stay.
+  void Forget(const std::vector<bool>& voxels);
 
   // The voxel with a normal whose mean is nearest, among the point's own and the 26 around it; null: none.
   // For many points near each other: slam/map/nearest_search.h.
@@ -97,7 +105,7 @@ class VoxelMap {
       if (slots_[slot].index < 0 || Same(slots_[slot].cell, cell)) return slots_[slot].index;
   }
   Voxel& FindOrAdd(const Cell& cell);
-  void Rehash(std::size_t slots);
+  void MakeTable();
   void Enter(std::int32_t index);
   void UpdateSurface(Voxel& voxel) const;
 

@@ -100,6 +100,10 @@ TEST(Footprint, ReachesToTheFarthestCollisionShapeInTheBaseFrame) {
   car.links[1].collision.push_back(box);
   EXPECT_NEAR(FootprintOf(car).front_m, 0.45, 1e-12);
   EXPECT_NEAR(FootprintOf(car).half_width_m, 0.15, 1e-12);
+  EXPECT_NEAR(FootprintOf(car).height_m, 0.15, 1e-12);
+  box.size_m = {0.02, 0.02, 1.0};  // a mast
+  car.links[1].collision.push_back(box);
+  EXPECT_NEAR(FootprintOf(car).height_m, 0.15, 1e-12);
 }
 
 TEST(Avoid, SeesNoFreeWayWhereTheCameraLooksAside) {

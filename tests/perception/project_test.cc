@@ -53,6 +53,29 @@ TEST(Project, PutsPixelsWhereTheirRaysPointInTheBodyFrame) {
   EXPECT_TRUE(observation.camera_base.isApprox(Eigen::Vector3f(0.3f, 0.0f, 0.35f), 1e-6f));
 }
 
+TEST(Project, TellsHowFarRaysAreFreeThatAreTooDarkToMeasure) {
+  // 900,000 e at 1 m of albedo 1: 0.05 of it falls to 5,000 e at 3 m, and to the sheet's least, 11,250 e, at 2 m.
+  DepthCameraSheet sheet = Sheet();
+  sheet.low_signal_amplitude_e = 11'250.0;
+  FilteredDepth depth = Depth();
+  depth.frame.settings.integration_s = 1e-3;
+  depth.reasons[4] = Rejection::kGhost, depth.frame.amplitude[4] = 20'000.0f;                    // 1.5 m straight ahead
+  depth.reasons[3] = Rejection::kLowSignal, depth.frame.amplitude[3] = 600.0f, depth.frame.flags[3] = kLowSignal;
+  depth.frame.flags[0] = kInvalid | kLowSignal, depth.frame.amplitude[0] = std::nanf("");       // as a driver may say it
+  depth.reasons[1] = Rejection::kSaturated, depth.frame.flags[1] = kSaturated | kLowSignal;
+  depth.reasons[2] = Rejection::kLonely;
+  Observation observation;
+  ProjectDepth(depth, sheet, PixelRays(sheet.camera), LookingAhead(0.3, 0.35), observation);
+  ASSERT_EQ(observation.free_base.size(), 3u);
+  const Eigen::Vector3f camera(0.3f, 0.0f, 0.35f);
+  EXPECT_NEAR((observation.free_base[0] - camera).norm(), 2.0f, 1e-5f);
+  EXPECT_NEAR((observation.free_base[1] - camera).norm(), 2.0f, 1e-5f);
+  EXPECT_TRUE(observation.free_base[2].isApprox(Eigen::Vector3f(1.8f, 0.0f, 0.35f), 1e-6f));
+  EXPECT_TRUE(observation.points_base.empty());
+  sheet.low_signal_amplitude_e = 0.0;
+  EXPECT_EQ(FreeRange_m(0.0, sheet, depth.frame.settings), UnambiguousRange_m(depth.frame.settings));
+}
+
 TEST(Project, KeepsSaturatedPixelsAsDirections) {
   FilteredDepth depth = Depth();
   depth.reasons[4] = Rejection::kSaturated;
@@ -86,7 +109,7 @@ TEST(Fuse, ColorsThePointThatFallsOnAPixelAndNoOther) {
   points[1].position = {10.0f, 0.0f, 2.0f};   // right of the picture
   points[2].position = {0.0f, 0.0f, -2.0f};   // behind the camera
   points[3].position = {0.0f, 0.0f, 0.0f};    // in it
-  ColorPoints(points, Picture(), camera, Pose::Identity());
+  ColorPoints(points, Picture(), camera, Pose::Identity(), 0.01);
   EXPECT_TRUE(points[0].has_color);
   EXPECT_EQ(points[0].bgr, (std::array<std::uint8_t, 3>{7, 100, 200}));
   for (int i = 1; i < 4; ++i) EXPECT_FALSE(points[i].has_color) << i;
@@ -98,10 +121,71 @@ TEST(Fuse, TakesThePixelTheLensPutsThePointOnAndNoneBeyondItsFold) {
   std::vector<Point> points(2);
   points[0].position = {0.7f, 0.0f, 1.0f};  // u = 4 * 0.5285 + 1 = 3.1; without the lens 3.8, outside
   points[1].position = {1.0f, 0.0f, 1.0f};
-  ColorPoints(points, Picture(), camera, Pose::Identity());
+  ColorPoints(points, Picture(), camera, Pose::Identity(), 0.01);
   EXPECT_TRUE(points[0].has_color);
   EXPECT_EQ(points[0].bgr[0], 3);
   EXPECT_FALSE(points[1].has_color);
+}
+
+// A depth camera's grid of rays, each as long as `depth_m` says for its slopes to the right and down.
+constexpr double kPixel_rad = 0.011;
+
+template <class Depth>
+std::vector<Point> SeenBy64x48(Depth depth_m) {
+  std::vector<Point> points;
+  for (int v = -24; v < 24; ++v)
+    for (int u = -32; u < 32; ++u) {
+      const double x = (u + 0.5) * kPixel_rad, y = (v + 0.5) * kPixel_rad, z_m = depth_m(x, y);
+      points.push_back({.position = Eigen::Vector3d(x * z_m, y * z_m, z_m).cast<float>()});
+    }
+  return points;
+}
+
+// 7 cm above the depth camera and looking the same way, with room around.
+struct ColorCameraAbove {
+  CameraModel camera{.width = 640, .height = 480, .fx_px = 700.0, .fy_px = 700.0, .cx_px = 319.5, .cy_px = 239.5};
+  ColorFrame frame;
+  ColorCameraAbove() { frame.width = 640, frame.height = 480, frame.bgr.assign(3 * 640 * 480, 200); }
+  Pose T_color_base = Pose(Eigen::Translation3d(0.0, 0.07, 0.0));
+};
+
+// A board at 1 m covers what lies above the axis, a wall stands at 3 m: from 7 cm higher up the board's lower edge hides the
+// wall down to 3 x 0.07 - 0.07 = 0.14 m below the axis.
+TEST(Fuse, PaintsNoSurfaceThatAnotherHidesFromTheColourCamera) {
+  const ColorCameraAbove above;
+  std::vector<Point> points = SeenBy64x48([](double, double down) { return down < 0.0 ? 1.0 : 3.0; });
+  ColorPoints(points, above.frame, above.camera, above.T_color_base, kPixel_rad);
+  int hidden = 0;
+  for (const Point& point : points) {
+    const double down_m = point.position.y(), pixel_m = 3.0 * kPixel_rad;
+    const bool is_wall = point.position.z() > 2.0f, is_hidden = is_wall && down_m < 0.14 - pixel_m;
+    const bool is_seen = !is_wall || down_m > 0.14 + pixel_m;
+    EXPECT_TRUE(point.has_color || !is_seen) << point.position.transpose();
+    EXPECT_FALSE(point.has_color && is_hidden) << point.position.transpose();
+    hidden += is_hidden;
+  }
+  EXPECT_GE(hidden, 3 * 64);  // rows at 1.7, 5.0 and 8.3 cm
+}
+
+TEST(Fuse, PaintsAllOfFloorsAndWallsSeenAtGrazingAngles) {
+  const ColorCameraAbove above;
+  const auto floor_and_wall = [](double right, double down) {  // 0.35 m below and 0.5 m to the right, to 12 m ahead
+    return std::min({12.0, down > 0.0 ? 0.35 / down : 12.0, right > 0.0 ? 0.5 / right : 12.0});
+  };
+  std::vector<Point> points = SeenBy64x48(floor_and_wall);
+  ColorPoints(points, above.frame, above.camera, above.T_color_base, kPixel_rad);
+  for (const Point& point : points) EXPECT_TRUE(point.has_color) << point.position.transpose();
+}
+
+TEST(Fuse, LeavesPointsThatAreNotFiniteUnpainted) {
+  const ColorCameraAbove above;
+  std::vector<Point> points(3);
+  points[0].position = {0.0f, 0.0f, std::nanf("")};
+  points[1].position = {0.0f, 0.0f, HUGE_VALF};
+  points[2].position = {std::nanf(""), 0.0f, 1.0f};
+  ColorPoints(points, above.frame, above.camera, above.T_color_base, kPixel_rad);
+  for (const Point& point : points) EXPECT_FALSE(point.has_color);
+  ColorPoints({}, above.frame, above.camera, above.T_color_base, kPixel_rad);
 }
 
 }  // namespace

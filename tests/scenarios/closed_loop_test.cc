@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -89,6 +90,20 @@ TEST(CorridorShort, EndsInGoodOrderWhenInterrupted) {
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "a/result.json"));
 }
 
+// Of the map that a run wrote: 15 bytes a point, the first twelve its place.
+int MapPointsIn(const std::filesystem::path& ply, const Eigen::AlignedBox3f& box_map) {
+  std::ifstream in(ply, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string_view end_of_header = "end_header\n";
+  int points = 0;
+  for (std::size_t at = bytes.find(end_of_header) + end_of_header.size(); at + 15 <= bytes.size(); at += 15) {
+    Eigen::Vector3f point;
+    std::memcpy(point.data(), bytes.data() + at, 12);
+    points += box_map.contains(point);
+  }
+  return points;
+}
+
 TEST(CorridorObstacle, StopsBeforeTheBoxStaysAndDrivesOn) {
   const TemporaryFolder folder;
   const RunReport report = DriveScenario("corridor_obstacle", folder.path() / "a", {}, 2, sim::Gl::kOff);
@@ -98,6 +113,10 @@ TEST(CorridorObstacle, StopsBeforeTheBoxStaysAndDrivesOn) {
   EXPECT_GE(*m.obstacle_gap_m, 0.3);
   EXPECT_GE(*m.obstacle_stop_s, 5.0);
   EXPECT_GE(*m.distance_m, 9.0);  // about 5.5 m until it stands; the rest after the box has gone
+  // The box's front covers 125 voxels of 4 cm (0.4 x 0.5 m). Low down beside the car nothing ever looked through it.
+  const Eigen::AlignedBox3f box_map(Eigen::Vector3f(5.4f, -0.3f, 0.06f), Eigen::Vector3f(7.0f, 0.3f, 0.6f));
+  EXPECT_LT(MapPointsIn(folder.path() / "a/map.ply", box_map), 60) << "what went away is still in the map";
+  EXPECT_GT(MapPointsIn(folder.path() / "a/map.ply", Eigen::AlignedBox3f(Eigen::Vector3f(0.0f, -2.0f, -1.0f), Eigen::Vector3f(9.0f, 2.0f, 3.0f))), 5000);
 }
 
 // A small battery with 12 % of its charge left, on the way.

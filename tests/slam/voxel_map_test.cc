@@ -99,6 +99,40 @@ TEST(VoxelMap, WeighsPointsByTheirPrecision) {
   EXPECT_NEAR(map.voxels()[0].mean.x(), (4.0 * 0.2 + 1.0 * 0.7) / 5.0, 1e-6);  // 1 / sigma^2: 4 to 1
 }
 
+TEST(VoxelMap, TakesTheColourOfTheBestView) {
+  std::vector<Point> wall, red;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) wall.push_back({.position = {0.5f, 0.025f * i + 0.0125f, 0.025f * j + 0.0125f}, .sigma_m = 0.01f});
+  VoxelMap map({});
+  map.Insert(wall, Pose::Identity(), 0.0);
+  const Voxel& voxel = *map.Nearest({0.5f, 0.25f, 0.25f});
+  EXPECT_FALSE(voxel.has_color());
+  // Red from 1 m in front; blue from 2 m away, at 60 deg: (cos 60 / 4)^2 = 1/64 of its weight.
+  const auto paint = [&](std::array<std::uint8_t, 3> bgr, const Eigen::Vector3f& from) {
+    const std::vector<Point> point{{.position = voxel.mean, .bgr = bgr, .has_color = true}, {.position = voxel.mean, .bgr = {9, 9, 9}},
+                                   {.position = {std::nanf(""), 0.0f, 0.0f}, .has_color = true}, {.position = {5.0f, 0.0f, 0.0f}, .has_color = true}};
+    map.Paint(point, from, Pose::Identity());
+  };
+  paint({200, 0, 0}, voxel.mean + Eigen::Vector3f(-1.0f, std::sqrt(3.0f), 0.0f));
+  EXPECT_TRUE(voxel.bgr().isApprox(Eigen::Vector3d(200.0, 0.0, 0.0), 1e-9));
+  paint({0, 0, 200}, voxel.mean - Eigen::Vector3f::UnitX());
+  EXPECT_TRUE(voxel.bgr().isApprox(Eigen::Vector3d(200.0 / 65.0, 0.0, 200.0 * 64.0 / 65.0), 1e-4)) << voxel.bgr().transpose();
+}
+
+TEST(VoxelMap, ForgetsTheVoxelsThatItIsTold) {
+  VoxelMap map({.voxel_m = 0.1, .flatness_max = 1.0, .plane_points_min = 3});
+  map.Insert(Scatter(3000, 0.5, 1), Pose::Identity(), 0.0);
+  const std::vector<Voxel> before = map.voxels();
+  std::vector<bool> every_second(before.size());
+  for (std::size_t i = 0; i < before.size(); i += 2) every_second[i] = true;
+  map.Forget(every_second);
+  ASSERT_EQ(map.voxels().size(), before.size() / 2);
+  for (std::size_t i = 0; i < map.voxels().size(); ++i) {
+    EXPECT_EQ(map.voxels()[i].cell, before[2 * i + 1].cell);
+    EXPECT_TRUE(!map.voxels()[i].has_normal() || map.Nearest(map.voxels()[i].mean) == &map.voxels()[i]);
+  }
+}
+
 TEST(VoxelMap, LeavesOutPointsThatAreNotFinite) {
   VoxelMap map({});
   const float bad[] = {std::nanf(""), HUGE_VALF, 1e30f};

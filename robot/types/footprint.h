@@ -1,0 +1,16 @@
+// The room a car takes up, for who keeps it off things or drives where there are none.
+#pragma once
+
+#include "robot/types/car.h"
+
+namespace merlin {
+
+// What of the car touches first, from base_link, over its collision shapes (boxes, cylinders, spheres; meshes are left out).
+struct Footprint {
+  double front_m = 0.0;
+  double half_width_m = 0.0;
+  double height_m = 0.0;  // of what is at least half as wide as the car: no mast
+};
+Footprint FootprintOf(const CarDescription& car);
+
+}  // namespace merlin
