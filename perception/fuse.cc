@@ -40,7 +40,9 @@ class DepthBuffer {
 
  private:
   float Cell(float px) const { return (px + 0.5f) / cell_px_; }
-  float& At(int column, int row) { return nearest_m_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)]; }
+  float& At(int column, int row) {
+    return nearest_m_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)];
+  }
 
   float cell_px_, reach_;
   int columns_, rows_;
@@ -69,7 +71,8 @@ void ColorPoints(std::span<Point> points_base, const ColorFrame& frame, const Ca
   }
   for (std::size_t i = 0; i < points_base.size(); ++i) {
     if (!projected[i].in_picture || buffer.Hides(projected[i])) continue;
-    const auto u = static_cast<std::size_t>(std::lround(projected[i].u_px)), v = static_cast<std::size_t>(std::lround(projected[i].v_px));
+    const auto u = static_cast<std::size_t>(std::lround(projected[i].u_px));
+    const auto v = static_cast<std::size_t>(std::lround(projected[i].v_px));
     const std::uint8_t* bgr = &frame.bgr[3 * (v * static_cast<std::size_t>(frame.width) + u)];
     points_base[i].bgr = {bgr[0], bgr[1], bgr[2]};
     points_base[i].has_color = true;

@@ -1,5 +1,5 @@
 // Colour onto points: each point takes the colour of the pixel it falls on (thesis eq. 4.16-4.18), unless the colour camera,
-// which looks from elsewhere, has something nearer in that place.
+// which looks from elsewhere, has something nearer in that place. What has no point (saturated, or too dark) hides nothing.
 #pragma once
 
 #include <span>

@@ -24,8 +24,9 @@ struct Observation {
   std::vector<Point> points_base;
   Eigen::Vector3f camera_base{0, 0, 0};         // where the rays begin
   double view_yaw_rad = 0.0;                    // where the camera looks, from straight ahead, positive: to the left
-  std::vector<Eigen::Vector3f> free_base;       // ends of rays too dark to measure: nothing but the darkest stands before them
-  std::vector<Eigen::Vector3f> saturated_base;  // unit directions of saturated pixels: something close, range unknown
+  // The pixels without a point: ends of rays too dark to measure, before which nothing but the darkest stands; unit
+  // directions of saturated ones (something close, range unknown), and of all others.
+  std::vector<Eigen::Vector3f> free_base, saturated_base, unknown_base;
   std::array<int, static_cast<std::size_t>(Rejection::kCount)> rejections{};
   Pose T_odom_base = Pose::Identity();          // wheel odometry since the start
   double yaw_rad = 0.0;                         // compass and wheels together, from the world's x axis

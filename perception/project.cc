@@ -13,7 +13,7 @@ double RangeSigma_m(double amplitude_e, const DepthCameraSheet& sheet, const Dep
 }
 
 double FreeRange_m(double amplitude_e, const DepthCameraSheet& sheet, const DepthSettings& settings) {
-  constexpr double kDarkest = 0.05;
+  constexpr double kDarkest = 0.02;
   const double least_e = std::max(sheet.low_signal_amplitude_e, amplitude_e);
   return std::min(std::sqrt(kDarkest * sheet.LampAmplitude_e_m2(settings) / least_e), UnambiguousRange_m(settings));
 }
@@ -26,6 +26,17 @@ std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera) {
   return rays;
 }
 
+namespace {
+
+// A driver that puts the range of a dark pixel to 0 calls it invalid too. One that clipped, or moved, is dark as well: what
+// is left of its phase is no measure of the light.
+bool IsDark(const FilteredDepth& depth, std::size_t i) {
+  const std::uint8_t flags = depth.frame.flags[i];
+  return (depth.reasons[i] == Rejection::kGhost || (flags & kLowSignal) != 0) && (flags & (kSaturated | kInconsistent)) == 0;
+}
+
+}  // namespace
+
 void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, const std::vector<Eigen::Vector3f>& rays,
                   const Pose& T_base_camera, Observation& observation) {
   const Eigen::Isometry3f T = T_base_camera.cast<float>();
@@ -34,14 +45,14 @@ void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, con
   observation.points_base.clear();
   observation.free_base.clear();
   observation.saturated_base.clear();
+  observation.unknown_base.clear();
   for (std::size_t i = 0; i < depth.frame.size(); ++i) {
-    // A driver that puts the range of a dark pixel to 0 calls it invalid too.
-    const bool dark = depth.reasons[i] != Rejection::kSaturated && (depth.frame.flags[i] & kLowSignal) != 0;
-    if (dark || depth.reasons[i] == Rejection::kGhost) {
+    const Eigen::Vector3f direction = T.linear() * rays[i];
+    if (depth.reasons[i] == Rejection::kSaturated) observation.saturated_base.push_back(direction);
+    else if (IsDark(depth, i)) {
       const double free_m = FreeRange_m(depth.frame.amplitude[i], sheet, depth.frame.settings);
-      observation.free_base.push_back(T * (rays[i] * static_cast<float>(free_m)));
-    }
-    if (depth.reasons[i] == Rejection::kSaturated) observation.saturated_base.push_back(T.linear() * rays[i]);
+      observation.free_base.push_back(observation.camera_base + direction * static_cast<float>(free_m));
+    } else if (depth.reasons[i] != Rejection::kNone) observation.unknown_base.push_back(direction);
     if (depth.reasons[i] != Rejection::kNone) continue;
     Point point;
     point.position = T * (rays[i] * depth.frame.range_m[i]);

@@ -17,12 +17,12 @@ double RangeSigma_m(double amplitude_e, const DepthCameraSheet& sheet, const Dep
 // Unit rays of all pixels in the optical frame, row-major.
 std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera);
 
-// How far [m] a pixel of so little amplitude is free at least: anything of albedo times cos(incidence) >= 0.05 (half the
-// dark test target's, or it at 60 deg) that stood nearer would have returned more. At most the unambiguous range.
+// How far [m] a pixel of so little amplitude is free at least: anything of albedo times cos(incidence) >= 0.02 (black
+// plastic's at 60 deg) that stood nearer would have returned more. At most the unambiguous range.
 double FreeRange_m(double amplitude_e, const DepthCameraSheet& sheet, const DepthSettings& settings);
 
-// Accepted pixels as points in the base frame; saturated ones as directions; those too dark, or dark enough to be ghosts,
-// as the way that is free before them.
+// Accepted pixels as points in the base frame; those too dark, or dark enough to be ghosts, as the way that is free before
+// them; all others as directions.
 void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, const std::vector<Eigen::Vector3f>& rays,
                   const Pose& T_base_camera, Observation& observation);
 

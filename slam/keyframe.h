@@ -9,7 +9,7 @@
 
 namespace merlin {
 
-// How far a frame saw, and from where.
+// How far a frame saw, and from where; a frame of another key frame's place, maybe of a later visit.
 struct Sight {
   Time stamp{0};
   Pose T_keyframe_base = Pose::Identity();
@@ -25,7 +25,7 @@ struct Keyframe {
   double yaw_sigma_rad = 0.0;
   std::vector<Point> points_base;
   Eigen::Vector3f camera_base{0, 0, 0};
-  std::vector<Sight> sights;                     // its own, and the last few while the car stood here
+  std::vector<Sight> sights;                     // its own, and the last few of frames that are here, but no key frames
   double in_local_map_m = 0.0;                   // path at which its points were last put into the local map
 };
 

@@ -11,13 +11,9 @@ namespace {
 constexpr int kRecallAtOnce = 2;       // former key frames put back into the local map a frame: it keeps up at 4 m/s
 constexpr double kRecall_m = 4.0;      // of views whose middles are nearer than this
 constexpr double kStands_m = 1e-3;     // from one frame to the next
-constexpr double kSightsApart_s = 0.2; // of a car that stands
-constexpr std::size_t kSights = 4;     // its key frame's, and the last three: as many as decide that something has gone
+constexpr double kSightsApart_s = 0.4; // where there are no new key frames
+constexpr std::size_t kSights = 4;     // a key frame's own, and three: as many as decide that something has gone
 constexpr double kLate_m = 1.0;        // what was seen on the last metre looks for loops
-
-ClearView ViewOf(const Observation& observation) {
-  return {observation.points_base, observation.free_base, observation.camera_base};
-}
 
 }  // namespace
 
@@ -73,13 +69,11 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   if (last_.converged) WatchWheels(motion, prior.T_map_base.inverse() * T_map_base);
   // The first key frame must be something to hold on to; later ones must have held on to it.
   const bool sees = static_cast<int>(source.size()) >= config_.icp.inliers_min;
-  const bool stands = motion.translation().norm() < kStands_m;
-  const bool restarts = GivesUp(observation.stamp, stands) && sees;
+  const bool restarts = GivesUp(observation.stamp, motion.translation().norm() < kStands_m) && sees;
   if (restarts) lost_frames_ = 0;
   const bool trusted = keyframes_.empty() ? sees : last_.converged || restarts;
   if (trusted) {
     Keep(observation, T_map_base);
-    if (stands) Watch(observation, T_map_base);
     if (closer_.IsDue(path_m_)) SearchLoop(observation, T_map_base);
     if (closer_.KnowsThePlace(path_m_)) RecallFormer(T_map_base);
   }
@@ -122,7 +116,10 @@ void Slam::Keep(const Observation& observation, const Pose& T_map_base) {
   const Pose since = keyframes_.empty() ? Pose::Identity() : keyframes_.back().T_map_base.inverse() * T_map_base;
   const bool moved = keyframes_.empty() || since.translation().norm() >= config_.keyframe_distance_m ||
                      std::abs(Yaw(since)) >= config_.keyframe_angle_rad;
-  if (!moved || IsRevisit(T_map_base)) return;
+  Keyframe* const former = moved ? FormerVisit(T_map_base) : nullptr;
+  if (former != nullptr) Watch(observation, T_map_base, *former);
+  else if (!moved) Watch(observation, T_map_base, keyframes_.back());
+  if (!moved || former != nullptr) return;
   local_.Insert(observation.points_base, T_map_base, path_m_);
   occupancy_.Insert(observation.points_base, observation.camera_base, T_map_base);
   Keyframe keyframe{.stamp = observation.stamp,
@@ -133,29 +130,35 @@ void Slam::Keep(const Observation& observation, const Pose& T_map_base) {
                     .yaw_sigma_rad = observation.yaw_sigma_rad,
                     .points_base = observation.points_base,
                     .camera_base = observation.camera_base,
-                    .sights = {{observation.stamp, Pose::Identity(), ViewOf(observation)}},
+                    .sights = {{observation.stamp, Pose::Identity(), ClearView(observation)}},
                     .in_local_map_m = path_m_};
   if (map_turn_rad_ && std::isfinite(observation.yaw_sigma_rad))
     keyframe.yaw_rad = WrapPi(observation.yaw_rad + *map_turn_rad_);
   keyframes_.push_back(std::move(keyframe));
+  sighted_at_ = observation.stamp;
 }
 
-// What comes and goes before a car that stands is news, though it is no place for another key frame.
-void Slam::Watch(const Observation& observation, const Pose& T_map_base) {
-  Keyframe& keyframe = keyframes_.back();
+// What has come or gone where the car stands, or comes by again, is news, though it is no place for another key frame.
+void Slam::Watch(const Observation& observation, const Pose& T_map_base, Keyframe& keyframe) {
   std::vector<Sight>& sights = keyframe.sights;
-  if (Seconds(observation.stamp - sights.back().stamp) < kSightsApart_s) return;
+  if (Seconds(observation.stamp - sighted_at_) < kSightsApart_s) return;
+  sighted_at_ = observation.stamp;
   if (sights.size() == kSights) sights.erase(sights.begin() + 1);
-  sights.push_back({observation.stamp, keyframe.T_map_base.inverse() * T_map_base, ViewOf(observation)});
+  sights.push_back({observation.stamp, keyframe.T_map_base.inverse() * T_map_base, ClearView(observation)});
 }
 
-bool Slam::IsRevisit(const Pose& T_map_base) const {
-  if (!closer_.KnowsThePlace(path_m_)) return false;
-  return std::ranges::any_of(keyframes_, [&](const Keyframe& keyframe) {
-    return path_m_ - keyframe.path_m >= config_.loop.apart_m &&
-           (keyframe.T_map_base.translation() - T_map_base.translation()).head<2>().norm() < config_.revisit_m &&
-           std::abs(WrapPi(Yaw(keyframe.T_map_base) - Yaw(T_map_base))) < config_.revisit_rad;
-  });
+// The nearest of those that know the place.
+Keyframe* Slam::FormerVisit(const Pose& T_map_base) {
+  Keyframe* nearest = nullptr;
+  double nearest_m = config_.revisit_m;
+  if (!closer_.KnowsThePlace(path_m_)) return nullptr;
+  for (Keyframe& keyframe : keyframes_) {
+    if (path_m_ - keyframe.path_m < config_.loop.apart_m) continue;
+    if (std::abs(WrapPi(Yaw(keyframe.T_map_base) - Yaw(T_map_base))) >= config_.revisit_rad) continue;
+    const double distance_m = (keyframe.T_map_base.translation() - T_map_base.translation()).head<2>().norm();
+    if (distance_m < nearest_m) nearest = &keyframe, nearest_m = distance_m;
+  }
+  return nearest;
 }
 
 // What a former visit saw here, for frames to be registered against.

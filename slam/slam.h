@@ -104,11 +104,11 @@ class Slam {
   PosePrior Predict(const Observation& observation) const;
   bool Begin(const Observation& observation);  // false: it waits for the heading
   void Keep(const Observation& observation, const Pose& T_map_base);
-  void Watch(const Observation& observation, const Pose& T_map_base);
+  void Watch(const Observation& observation, const Pose& T_map_base, Keyframe& keyframe);
   void Record(Time stamp, const Pose& T_map_base);
   void WatchWheels(const Pose& motion, const Pose& T_prior_registered);
   bool GivesUp(Time stamp, bool stands);
-  bool IsRevisit(const Pose& T_map_base) const;
+  Keyframe* FormerVisit(const Pose& T_map_base);
   void RecallFormer(const Pose& T_map_base);
   void SearchLoop(const Observation& observation, Pose& T_map_base);
   void Correct(const std::vector<Pose>& corrected);
@@ -132,6 +132,7 @@ class Slam {
   RegisterResult last_;
   int lost_frames_ = 0;
   double path_m_ = 0.0, pruned_at_m_ = 0.0, slip_ = 0.0;
+  Time sighted_at_{0};
   std::optional<Time> first_stamp_;
   std::optional<Time> lost_standing_;   // since then
   std::optional<double> map_turn_rad_;  // yaw in the map less the heading's

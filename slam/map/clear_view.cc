@@ -3,62 +3,95 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 namespace merlin {
 namespace {
 
-constexpr float kWidest = 1.732f;      // tangent of 60 deg
+constexpr float kWidest = 1.732f;  // tangent of 60 deg
+constexpr float kLongest_m = 100.0f;
 
-// Of a bin and its neighbours to the left, below, and both: the rays on all sides of the corner between them.
-float Shortest(const std::vector<float>& free_m, std::size_t width, std::size_t row, std::size_t column) {
-  float shortest = 0.0f;
-  for (const std::size_t bin : {row * width + column, row * width + column - 1, (row - 1) * width + column, (row - 1) * width + column - 1})
-    if (free_m[bin] > 0.0f && (shortest == 0.0f || free_m[bin] < shortest)) shortest = free_m[bin];
-  return shortest;
+struct Ray {
+  Eigen::Vector3f end{0, 0, 0};  // from the camera
+  enum class Kind { kPoint, kDark, kUnknown } kind;
+};
+
+std::vector<Ray> RaysOf(const Observation& observation) {
+  std::vector<Ray> rays;
+  rays.reserve(observation.points_base.size() + observation.free_base.size() + observation.unknown_base.size());
+  for (const Point& point : observation.points_base) rays.push_back({point.position - observation.camera_base, Ray::Kind::kPoint});
+  for (const Eigen::Vector3f& end : observation.free_base) rays.push_back({end - observation.camera_base, Ray::Kind::kDark});
+  for (const auto& directions : {std::cref(observation.saturated_base), std::cref(observation.unknown_base)})
+    for (const Eigen::Vector3f& direction : directions.get()) rays.push_back({direction, Ray::Kind::kUnknown});
+  std::erase_if(rays, [](const Ray& ray) { return !(ray.end.norm() > 1e-3f && ray.end.norm() < kLongest_m); });
+  return rays;
 }
+
+// x level along the middle of the rays, z up; none: they have no such middle.
+std::optional<Eigen::Matrix3f> LevelView(const std::vector<Ray>& rays) {
+  Eigen::Vector2f middle = Eigen::Vector2f::Zero();
+  for (const Ray& ray : rays) middle += ray.end.head<2>() / ray.end.norm();
+  if (!(middle.norm() > 1e-3f * static_cast<float>(rays.size()))) return std::nullopt;
+  middle.normalize();
+  Eigen::Matrix3f R_view_base;
+  R_view_base << middle.x(), middle.y(), 0.0f, -middle.y(), middle.x(), 0.0f, 0.0f, 0.0f, 1.0f;
+  return R_view_base;
+}
+
+// The rays of one bin.
+struct Bin {
+  float shortest_m = HUGE_VALF;
+  bool dark = false, unknown = false;
+
+  void Add(const Ray& ray) {
+    if (ray.kind == Ray::Kind::kUnknown) unknown = true;
+    else shortest_m = std::min(shortest_m, ray.end.norm());
+    dark |= ray.kind == Ray::Kind::kDark;
+  }
+  void Add(const Bin& other) {
+    shortest_m = std::min(shortest_m, other.shortest_m);
+    dark |= other.dark, unknown |= other.unknown;
+  }
+};
 
 }  // namespace
 
-ClearView::ClearView(std::span<const Point> points_base, std::span<const Eigen::Vector3f> free_base,
-                     const Eigen::Vector3f& camera_base)
-    : camera_base_(camera_base) {
-  std::vector<Eigen::Vector3f> rays;
-  rays.reserve(points_base.size() + free_base.size());
-  for (const Point& point : points_base) rays.push_back(point.position - camera_base);
-  for (const Eigen::Vector3f& end : free_base) rays.push_back(end - camera_base);
-  std::erase_if(rays, [](const Eigen::Vector3f& ray) { return !(ray.allFinite() && ray.norm() > 1e-3f); });
-
-  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
-  for (const Eigen::Vector3f& ray : rays) middle += ray.normalized();
-  const Eigen::Vector3f level = Eigen::Vector3f::UnitZ().cross(middle);
-  if (!(middle.norm() > 1e-3f * static_cast<float>(rays.size())) || !(level.norm() > 1e-3f * middle.norm())) return;
-  R_view_base_.row(0) = middle.normalized();
-  R_view_base_.row(1) = level.normalized();
-  R_view_base_.row(2) = R_view_base_.row(0).cross(R_view_base_.row(1));
-
-  for (Eigen::Vector3f& ray : rays) ray = R_view_base_ * ray;
-  std::erase_if(rays, [](const Eigen::Vector3f& ray) { return !(ray.tail<2>().norm() < kWidest * ray.x()); });
+ClearView::ClearView(const Observation& observation) : camera_base_(observation.camera_base) {
+  std::vector<Ray> rays = RaysOf(observation);
+  const auto R_view_base = LevelView(rays);
+  if (!R_view_base) return;
+  R_view_base_ = *R_view_base;
+  for (Ray& ray : rays) ray.end = R_view_base_ * ray.end;
+  std::erase_if(rays, [](const Ray& ray) { return !(ray.end.tail<2>().norm() < kWidest * ray.end.x()); });
   if (rays.empty()) return;
+
   Eigen::Array2f low(kWidest, kWidest), high(-kWidest, -kWidest);
-  for (const Eigen::Vector3f& ray : rays) {
-    const Eigen::Array2f tangents = ray.tail<2>().array() / ray.x();
+  for (const Ray& ray : rays) {
+    const Eigen::Array2f tangents = ray.end.tail<2>().array() / ray.end.x();
     low = low.min(tangents), high = high.max(tangents);
-    reach_m_ = std::max(reach_m_, ray.norm());
+    if (ray.kind != Ray::Kind::kUnknown) reach_m_ = std::max(reach_m_, ray.end.norm());
   }
-  // One ray a bin, about, and an empty border.
-  const float bin = std::max(1e-3f, std::sqrt((high - low).prod() / static_cast<float>(rays.size())));
-  const Eigen::Array2f origin = low - bin;
-  const Eigen::Array2<std::size_t> bins = ((high - low) / bin).cast<std::size_t>() + 3;
-  std::vector<float> nearest_m(bins.prod(), 0.0f);
-  for (const Eigen::Vector3f& ray : rays) {
-    const Eigen::Array2<std::size_t> at = ((ray.tail<2>().array() / ray.x() - origin) / bin).cast<std::size_t>().min(bins - 2);
-    float& nearest = nearest_m[at.y() * bins.x() + at.x()];
-    nearest = nearest == 0.0f ? ray.norm() : std::min(nearest, ray.norm());
+  // One pixel a bin, about, and an empty border; what is kept is the four bins around each corner between bins.
+  const float pitch = std::max(1e-3f, std::sqrt((high - low).prod() / static_cast<float>(rays.size())));
+  const Eigen::Array2f origin = low - pitch;
+  const Eigen::Array2<std::size_t> size = ((high - low) / pitch).cast<std::size_t>() + 3;
+  std::vector<Bin> bins(size.prod());
+  for (const Ray& ray : rays) {
+    const Eigen::Array2f place = (ray.end.tail<2>().array() / ray.end.x() - origin) / pitch;
+    const Eigen::Array2<std::size_t> at = place.cast<std::size_t>().min(size - 2);
+    bins[at.y() * size.x() + at.x()].Add(ray);
   }
-  left_ = origin.x() + 0.5f * bin, low_ = origin.y() + 0.5f * bin, per_bin_ = 1.0f / bin;
-  width_ = bins.x() - 1, height_ = bins.y() - 1;
-  for (std::size_t row = 1; row < bins.y(); ++row)
-    for (std::size_t column = 1; column < bins.x(); ++column) free_m_.push_back(Shortest(nearest_m, bins.x(), row, column));
+  left_ = origin.x() + 0.5f * pitch, low_ = origin.y() + 0.5f * pitch, per_bin_ = 1.0f / pitch;
+  width_ = size.x() - 1, height_ = size.y() - 1;
+  lengths_.reserve(width_ * height_);
+  for (std::size_t corner = 0; corner + size.x() < bins.size(); ++corner) {
+    if (corner % size.x() == width_) continue;
+    Bin around = bins[corner];
+    for (const std::size_t beside : {corner + 1, corner + size.x(), corner + size.x() + 1}) around.Add(bins[beside]);
+    const float length_m = around.unknown || around.shortest_m == HUGE_VALF ? 0.0f : around.shortest_m;
+    lengths_.push_back(static_cast<std::int16_t>((around.dark ? -length_m : length_m) / kUnit_m));
+  }
 }
 
 }  // namespace merlin

@@ -9,16 +9,36 @@
 namespace merlin {
 namespace {
 
-constexpr double kFloor_m = 0.06;  // and what stands no higher is not cleared away by driving over it
 constexpr float kBlock_m = 1.0f;  // square columns of voxels that are in sight, or not, together
 
+constexpr float kFloor_m = 0.06f;  // what is no higher may be floor
 constexpr int kMost = 2, kLeast = -3;
+constexpr float kAslant = 0.15f;       // cosine; flatter surfaces show behind themselves by the error of a pose...
+constexpr float kAslantDark = 0.3f;    // ...or send too little back: black rubber's albedo of 0.07 still does
+constexpr float kRange_m = 0.05f, kRangeShare = 0.03f, kPose_m = 0.05f;  // errors; guess
+constexpr float kBody_m = 0.04f;       // the car is narrower than its footprint, by the error of a pose
+constexpr float kReach_m = 0.1f;       // of its middle, before and behind: from one key frame to the next
 
-// Evidence that something is there, as an occupancy grid's log odds: two for each frame that sees it, one less for each
-// that looks through, bounded so that three of these outweigh whatever was before.
-int Weighed(int evidence, ClearView::Look look) {
-  if (look == ClearView::Look::kThere) return std::min(evidence + 2, kMost);
-  if (look == ClearView::Look::kThrough) return std::max(evidence - 1, kLeast);
+enum class Look { kNone, kThere, kThrough };
+
+// Of the angle between a surface and the ray to it, from the camera. Without a normal: steep enough, unless it may be floor.
+float CosineOf(const Eigen::Vector3f& normal, const Eigen::Vector3f& ray, const Eigen::Vector3f& point_map) {
+  if (normal.isZero()) return point_map.z() < kFloor_m ? 0.0f : kAslantDark;
+  return std::abs(normal.dot(ray)) / ray.norm();
+}
+
+Look LookAt(const ClearView::Reach& reach, float range_m, float cosine) {
+  if (reach.length_m == 0.0f || cosine < kAslant || (reach.dark && cosine < kAslantDark)) return Look::kNone;
+  const float margin_m = kRange_m + kRangeShare * range_m + kPose_m / cosine;
+  if (reach.length_m > range_m + margin_m) return Look::kThrough;
+  return !reach.dark && reach.length_m >= range_m - margin_m ? Look::kThere : Look::kNone;
+}
+
+// Evidence that something is there, as an occupancy grid's log odds: two for each sight of it, one less for each through it,
+// bounded so that three of these outweigh whatever was before.
+int Weighed(int evidence, Look look) {
+  if (look == Look::kThere) return std::min(evidence + 2, kMost);
+  if (look == Look::kThrough) return std::max(evidence - 1, kLeast);
   return evidence;
 }
 
@@ -29,8 +49,9 @@ struct Block {
 };
 
 struct Blocks {
-  std::vector<std::size_t> voxels;      // their indices, block by block
-  std::vector<Eigen::Vector3f> points;  // their means, in the same order
+  std::vector<std::size_t> voxels;      // their indices, block by block; in the same order:
+  std::vector<Eigen::Vector3f> points;  // their means
+  std::vector<Eigen::Vector3f> normals;
   std::vector<Block> blocks;
 };
 
@@ -48,6 +69,7 @@ Blocks InBlocks(std::span<const Voxel> voxels) {
       out.blocks.push_back({.middle = {(x + 0.5f) * kBlock_m, (y + 0.5f) * kBlock_m, 0.0f}, .begin = i, .end = i});
     ++out.blocks.back().end;
     out.points.push_back(voxels[out.voxels[i]].mean);
+    out.normals.push_back(voxels[out.voxels[i]].normal);
   }
   return out;
 }
@@ -65,12 +87,18 @@ class Evidence {
  public:
   explicit Evidence(std::span<const Voxel> voxels) : all_(InBlocks(voxels)), weighed_(voxels.size(), 0) {}
 
-  void Look(const ClearView& view, const Eigen::Isometry3f& T_base_map) {
+  void Add(const ClearView& view, const Eigen::Isometry3f& T_base_map) {
     const Eigen::Matrix3f R = view.R_view_base() * T_base_map.linear();
     const Eigen::Vector3f t = view.R_view_base() * (T_base_map.translation() - view.camera_base());
+    const Eigen::Vector3f camera_map = T_base_map.inverse() * view.camera_base();
     for (const Block& block : all_.blocks) {
       if (!MayBeSeen(R * block.middle + t, view)) continue;
-      for (std::size_t i = block.begin; i < block.end; ++i) weighed_[i] = Weighed(weighed_[i], view.AtView(R * all_.points[i] + t));
+      for (std::size_t i = block.begin; i < block.end; ++i) {
+        const ClearView::Reach reach = view.Along(R * all_.points[i] + t);
+        if (reach.length_m == 0.0f) continue;
+        const Eigen::Vector3f ray = all_.points[i] - camera_map, &normal = all_.normals[i];
+        weighed_[i] = Weighed(weighed_[i], LookAt(reach, ray.norm(), CosineOf(normal, ray, all_.points[i])));
+      }
     }
   }
 
@@ -94,21 +122,35 @@ class Evidence {
   std::vector<int> weighed_;  // in the order of the blocks' voxels
 };
 
-// What the car surely fills, off the floor.
-Eigen::AlignedBox3f Filled(const Footprint& footprint) {
-  const Eigen::Vector3d low(0.0, -footprint.half_width_m, kFloor_m), high(footprint.front_m, footprint.half_width_m, footprint.height_m);
-  return {low.cast<float>(), high.cast<float>()};
+// The room that the car passes through, off the floor. Its nose may go under something; what comes to its middle would have
+// met the camera's mast.
+Eigen::AlignedBox3f MiddleOf(const Footprint& footprint) {
+  const auto half_m = static_cast<float>(footprint.half_width_m) - kBody_m;
+  return {Eigen::Vector3f(-kReach_m, -half_m, kFloor_m), Eigen::Vector3f(kReach_m, half_m, static_cast<float>(footprint.height_m))};
+}
+
+struct PlacedSight {
+  const Sight* sight;
+  Pose T_map_base;
+};
+
+std::vector<PlacedSight> InOrderOfTime(std::span<const Keyframe> keyframes) {
+  std::vector<PlacedSight> sights;
+  for (const Keyframe& keyframe : keyframes)
+    for (const Sight& sight : keyframe.sights) sights.push_back({&sight, keyframe.T_map_base * sight.T_keyframe_base});
+  std::ranges::stable_sort(sights, {}, [](const PlacedSight& placed) { return placed.sight->stamp; });
+  return sights;
 }
 
 }  // namespace
 
 std::vector<bool> MovedAway(std::span<const Voxel> voxels, std::span<const Keyframe> keyframes, const Footprint& footprint) {
   Evidence evidence(voxels);
-  const Eigen::AlignedBox3f car_base = Filled(footprint);
-  for (const Keyframe& keyframe : keyframes) {
-    for (const Sight& sight : keyframe.sights)
-      evidence.Look(sight.view, (keyframe.T_map_base * sight.T_keyframe_base).inverse().cast<float>());
-    if (!car_base.isEmpty()) evidence.Sweep(car_base, keyframe.T_map_base.inverse().cast<float>());
+  const Eigen::AlignedBox3f car_base = MiddleOf(footprint);
+  for (const PlacedSight& placed : InOrderOfTime(keyframes)) {
+    const Eigen::Isometry3f T_base_map = placed.T_map_base.inverse().cast<float>();
+    evidence.Add(placed.sight->view, T_base_map);
+    if (!car_base.isEmpty()) evidence.Sweep(car_base, T_base_map);
   }
   return evidence.Gone();
 }

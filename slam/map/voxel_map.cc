@@ -9,7 +9,7 @@
 namespace merlin {
 namespace {
 
-constexpr double kNearest_m = 0.05;  // views from nearer count as from there
+constexpr double kNearest_m = 0.5;   // views from nearer count as from there: one that errs should not decide alone
 constexpr double kGrazing = 0.01;    // cosine; so that whatever was seen has a colour
 
 template <class Function>
@@ -56,10 +56,10 @@ void VoxelMap::Insert(std::span<const Point> points_base, const Pose& T_map_base
   touched.reserve(points_base.size());
   for (const Point& point : points_base) {
     const Eigen::Vector3d p_map = T_map_base * point.position.cast<double>();
-    if (!InReach(p_map.cast<float>())) continue;
+    const double weight = 1e-4 / std::max<double>(point.sigma_m * point.sigma_m, 1e-6);
+    if (!InReach(p_map.cast<float>()) || !(weight > 0.0)) continue;  // an infinite sigma weighs nothing
     const Cell cell = CellOf(p_map);
     Voxel& voxel = FindOrAdd(cell);
-    const double weight = 1e-4 / std::max<double>(point.sigma_m * point.sigma_m, 1e-6);
     const Eigen::Vector3d d = p_map - Centre(cell);
     ++voxel.count;
     voxel.weight += weight;

@@ -54,16 +54,21 @@ TEST(Project, PutsPixelsWhereTheirRaysPointInTheBodyFrame) {
 }
 
 TEST(Project, TellsHowFarRaysAreFreeThatAreTooDarkToMeasure) {
-  // 900,000 e at 1 m of albedo 1: 0.05 of it falls to 5,000 e at 3 m, and to the sheet's least, 11,250 e, at 2 m.
+  // 900,000 e at 1 m of albedo 1: 0.02 of it falls to 2,000 e at 3 m, and to the sheet's least, 4,500 e, at 2 m.
   DepthCameraSheet sheet = Sheet();
-  sheet.low_signal_amplitude_e = 11'250.0;
+  sheet.low_signal_amplitude_e = 4'500.0;
   FilteredDepth depth = Depth();
   depth.frame.settings.integration_s = 1e-3;
-  depth.reasons[4] = Rejection::kGhost, depth.frame.amplitude[4] = 20'000.0f;                    // 1.5 m straight ahead
-  depth.reasons[3] = Rejection::kLowSignal, depth.frame.amplitude[3] = 600.0f, depth.frame.flags[3] = kLowSignal;
-  depth.frame.flags[0] = kInvalid | kLowSignal, depth.frame.amplitude[0] = std::nanf("");       // as a driver may say it
-  depth.reasons[1] = Rejection::kSaturated, depth.frame.flags[1] = kSaturated | kLowSignal;
-  depth.reasons[2] = Rejection::kLonely;
+  const auto pixel = [&depth](std::size_t i, Rejection reason, int flags, float amplitude_e) {
+    depth.reasons[i] = reason, depth.frame.flags[i] = static_cast<std::uint8_t>(flags), depth.frame.amplitude[i] = amplitude_e;
+  };
+  pixel(4, Rejection::kGhost, 0, 8'000.0f);                                         // 1.5 m straight ahead
+  pixel(3, Rejection::kLowSignal, kLowSignal, 600.0f);
+  pixel(0, Rejection::kInvalid, kInvalid | kLowSignal, std::nanf(""));              // as a driver may say it
+  pixel(1, Rejection::kSaturated, kSaturated | kLowSignal, 0.0f);
+  pixel(2, Rejection::kLonely, 0, 8'000.0f);
+  pixel(5, Rejection::kInvalid, kInvalid | kSaturated | kLowSignal, 0.0f);          // clipped, and what is left is dark
+  pixel(6, Rejection::kInconsistent, kInconsistent | kLowSignal, 600.0f);
   Observation observation;
   ProjectDepth(depth, sheet, PixelRays(sheet.camera), LookingAhead(0.3, 0.35), observation);
   ASSERT_EQ(observation.free_base.size(), 3u);
@@ -71,6 +76,8 @@ TEST(Project, TellsHowFarRaysAreFreeThatAreTooDarkToMeasure) {
   EXPECT_NEAR((observation.free_base[0] - camera).norm(), 2.0f, 1e-5f);
   EXPECT_NEAR((observation.free_base[1] - camera).norm(), 2.0f, 1e-5f);
   EXPECT_TRUE(observation.free_base[2].isApprox(Eigen::Vector3f(1.8f, 0.0f, 0.35f), 1e-6f));
+  EXPECT_EQ(observation.saturated_base.size(), 1u);
+  EXPECT_EQ(observation.unknown_base.size(), 5u);  // 2, 5, 6 and the two that nothing was said of
   EXPECT_TRUE(observation.points_base.empty());
   sheet.low_signal_amplitude_e = 0.0;
   EXPECT_EQ(FreeRange_m(0.0, sheet, depth.frame.settings), UnambiguousRange_m(depth.frame.settings));
