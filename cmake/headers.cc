@@ -1,0 +1,1 @@
+// No code: its targets carry the precompiled header that libraries share.
