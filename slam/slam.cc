@@ -11,7 +11,7 @@ namespace {
 constexpr int kRecallAtOnce = 2;       // former key frames put back into the local map a frame: it keeps up at 4 m/s
 constexpr double kRecall_m = 4.0;      // of views whose middles are nearer than this
 constexpr double kStands_m = 1e-3;     // from one frame to the next
-constexpr double kSightsApart_s = 0.4; // where there are no new key frames
+constexpr double kSightsApart_s = 0.3; // where there are no new key frames
 constexpr std::size_t kSights = 4;     // a key frame's own, and three: as many as decide that something has gone
 constexpr double kLate_m = 1.0;        // what was seen on the last metre looks for loops
 
