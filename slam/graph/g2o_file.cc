@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <iterator>
@@ -15,6 +14,7 @@
 #include "robot/types/text_fields.h"
 #include "slam/graph/edge_error.h"
 #include "slam/graph/initial_poses.h"
+#include "slam/graph/semidefinite.h"
 
 namespace merlin {
 namespace {
@@ -127,13 +127,9 @@ class Reader {
       for (std::size_t j = i; j < rows.size(); ++j)
         information(rows[i], rows[j]) = information(rows[j], rows[i]) =
             fields.Number("the information matrix", kLargestInformation);
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(information);
-    const Vector6d values = solver.eigenvalues();
-    if (values.minCoeff() < -kIndefiniteTolerance * values.cwiseAbs().maxCoeff()) {
+    if (const auto semidefinite = MadeSemidefinite(information, kIndefiniteTolerance)) {
       indefinite_.push_back(number);
-      const Matrix6d& V = solver.eigenvectors();
-      information = V * values.cwiseMax(0.0).asDiagonal() * V.transpose();
-      information = 0.5 * (information + information.transpose()).eval();
+      information = *semidefinite;
     }
     return *planar_ ? information : Rescaled(information, 0.5);  // the quaternion's vector part is half our rotation
   }
