@@ -12,10 +12,13 @@ double RangeSigma_m(double amplitude_e, const DepthCameraSheet& sheet, const Dep
   return scale_m * std::sqrt(signal_e + 2.0 * sheet.read_noise_e * sheet.read_noise_e) / amplitude_e;
 }
 
-double FreeRange_m(double amplitude_e, const DepthCameraSheet& sheet, const DepthSettings& settings) {
-  constexpr double kDarkest = 0.02;
-  const double least_e = std::max(sheet.low_signal_amplitude_e, amplitude_e);
-  return std::min(std::sqrt(kDarkest * sheet.LampAmplitude_e_m2(settings) / least_e), UnambiguousRange_m(settings));
+FreeRange::FreeRange(const DepthCameraSheet& sheet, const DepthSettings& settings)
+    : darkest_e_m2_(0.02 * sheet.LampAmplitude_e_m2(settings)),
+      least_e_(sheet.low_signal_amplitude_e),
+      farthest_m_(UnambiguousRange_m(settings)) {}
+
+double FreeRange::Of_m(double amplitude_e) const {
+  return std::min(std::sqrt(darkest_e_m2_ / std::max(least_e_, amplitude_e)), farthest_m_);
 }
 
 std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera) {
@@ -46,11 +49,12 @@ void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, con
   observation.free_base.clear();
   observation.saturated_base.clear();
   observation.unknown_base.clear();
+  const FreeRange free_range(sheet, depth.frame.settings);
   for (std::size_t i = 0; i < depth.frame.size(); ++i) {
     const Eigen::Vector3f direction = T.linear() * rays[i];
     if (depth.reasons[i] == Rejection::kSaturated) observation.saturated_base.push_back(direction);
     else if (IsDark(depth, i)) {
-      const double free_m = FreeRange_m(depth.frame.amplitude[i], sheet, depth.frame.settings);
+      const double free_m = free_range.Of_m(depth.frame.amplitude[i]);
       observation.free_base.push_back(observation.camera_base + direction * static_cast<float>(free_m));
     } else if (depth.reasons[i] != Rejection::kNone) observation.unknown_base.push_back(direction);
     if (depth.reasons[i] != Rejection::kNone) continue;

@@ -19,7 +19,14 @@ std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera);
 
 // How far [m] a pixel of so little amplitude is free at least: anything of albedo times cos(incidence) >= 0.02 (black
 // plastic's at 60 deg) that stood nearer would have returned more. At most the unambiguous range.
-double FreeRange_m(double amplitude_e, const DepthCameraSheet& sheet, const DepthSettings& settings);
+class FreeRange {
+ public:
+  FreeRange(const DepthCameraSheet& sheet, const DepthSettings& settings);
+  double Of_m(double amplitude_e) const;
+
+ private:
+  double darkest_e_m2_, least_e_, farthest_m_;
+};
 
 // Accepted pixels as points in the base frame; those too dark, or dark enough to be ghosts, as the way that is free before
 // them; all others as directions.

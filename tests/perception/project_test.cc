@@ -80,7 +80,7 @@ TEST(Project, TellsHowFarRaysAreFreeThatAreTooDarkToMeasure) {
   EXPECT_EQ(observation.unknown_base.size(), 5u);  // 2, 5, 6 and the two that nothing was said of
   EXPECT_TRUE(observation.points_base.empty());
   sheet.low_signal_amplitude_e = 0.0;
-  EXPECT_EQ(FreeRange_m(0.0, sheet, depth.frame.settings), UnambiguousRange_m(depth.frame.settings));
+  EXPECT_EQ(FreeRange(sheet, depth.frame.settings).Of_m(0.0), UnambiguousRange_m(depth.frame.settings));
 }
 
 TEST(Project, KeepsSaturatedPixelsAsDirections) {
