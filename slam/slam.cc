@@ -11,7 +11,8 @@ namespace {
 constexpr int kRecallAtOnce = 2;       // former key frames put back into the local map a frame: it keeps up at 4 m/s
 constexpr double kRecall_m = 4.0;      // of views whose middles are nearer than this
 constexpr double kStands_m = 1e-3;     // from one frame to the next
-constexpr double kSightsApart_s = 0.3; // where there are no new key frames
+constexpr double kSightsApart_s = 0.3; // of a car that stands...
+constexpr double kAgainApart_s = 0.8;  // ...or comes by again: a lap more keeps under 10 MB
 constexpr std::size_t kSights = 4;     // a key frame's own, and three: as many as decide that something has gone
 constexpr double kLate_m = 1.0;        // what was seen on the last metre looks for loops
 
@@ -141,7 +142,8 @@ void Slam::Keep(const Observation& observation, const Pose& T_map_base) {
 // What has come or gone where the car stands, or comes by again, is news, though it is no place for another key frame.
 void Slam::Watch(const Observation& observation, const Pose& T_map_base, Keyframe& keyframe) {
   std::vector<Sight>& sights = keyframe.sights;
-  if (Seconds(observation.stamp - sighted_at_) < kSightsApart_s) return;
+  const bool again = &keyframe != &keyframes_.back();
+  if (Seconds(observation.stamp - sighted_at_) < (again ? kAgainApart_s : kSightsApart_s)) return;
   sighted_at_ = observation.stamp;
   if (sights.size() == kSights) sights.erase(sights.begin() + 1);
   sights.push_back({observation.stamp, keyframe.T_map_base.inverse() * T_map_base, ClearView(observation)});
