@@ -6,10 +6,13 @@
 
 namespace merlin {
 
-double RangeSigma_m(double amplitude_e, const DepthCameraSheet& sheet, const DepthSettings& settings) {
-  const double scale_m = kSpeedOfLight_m_s / (4.0 * std::numbers::sqrt2 * std::numbers::pi * settings.frequency_hz);
-  const double signal_e = amplitude_e / sheet.Contrast(settings.frequency_hz);
-  return scale_m * std::sqrt(signal_e + 2.0 * sheet.read_noise_e * sheet.read_noise_e) / amplitude_e;
+RangeSigma::RangeSigma(const DepthCameraSheet& sheet, const DepthSettings& settings)
+    : scale_m_(kSpeedOfLight_m_s / (4.0 * std::numbers::sqrt2 * std::numbers::pi * settings.frequency_hz)),
+      contrast_(sheet.Contrast(settings.frequency_hz)),
+      noise_e2_(2.0 * sheet.read_noise_e * sheet.read_noise_e) {}
+
+double RangeSigma::Of_m(double amplitude_e) const {
+  return scale_m_ * std::sqrt(amplitude_e / contrast_ + noise_e2_) / amplitude_e;
 }
 
 FreeRange::FreeRange(const DepthCameraSheet& sheet, const DepthSettings& settings)
@@ -49,6 +52,7 @@ void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, con
   observation.free_base.clear();
   observation.saturated_base.clear();
   observation.unknown_base.clear();
+  const RangeSigma sigma(sheet, depth.frame.settings);
   const FreeRange free_range(sheet, depth.frame.settings);
   for (std::size_t i = 0; i < depth.frame.size(); ++i) {
     const Eigen::Vector3f direction = T.linear() * rays[i];
@@ -60,7 +64,7 @@ void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, con
     if (depth.reasons[i] != Rejection::kNone) continue;
     Point point;
     point.position = T * (rays[i] * depth.frame.range_m[i]);
-    point.sigma_m = static_cast<float>(RangeSigma_m(depth.frame.amplitude[i], sheet, depth.frame.settings));
+    point.sigma_m = static_cast<float>(sigma.Of_m(depth.frame.amplitude[i]));
     observation.points_base.push_back(point);
   }
 }

@@ -12,7 +12,14 @@ namespace merlin {
 
 // One sigma of a range [m] from the pixel's amplitude: small-error law of the two-tap, four-phase estimator,
 // c / (4 sqrt2 pi f) sqrt(N_s + 2 sigma_r^2) / (C N_s) with C N_s = amplitude (R. Lange, thesis, Siegen 2000).
-double RangeSigma_m(double amplitude_e, const DepthCameraSheet& sheet, const DepthSettings& settings);
+class RangeSigma {
+ public:
+  RangeSigma(const DepthCameraSheet& sheet, const DepthSettings& settings);
+  double Of_m(double amplitude_e) const;
+
+ private:
+  double scale_m_, contrast_, noise_e2_;
+};
 
 // Unit rays of all pixels in the optical frame, row-major.
 std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera);

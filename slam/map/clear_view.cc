@@ -19,7 +19,8 @@ struct Ray {
 
 std::vector<Ray> RaysOf(const Observation& observation) {
   std::vector<Ray> rays;
-  rays.reserve(observation.points_base.size() + observation.free_base.size() + observation.unknown_base.size());
+  rays.reserve(observation.points_base.size() + observation.free_base.size() + observation.saturated_base.size() +
+               observation.unknown_base.size());
   for (const Point& point : observation.points_base) rays.push_back({point.position - observation.camera_base, Ray::Kind::kPoint});
   for (const Eigen::Vector3f& end : observation.free_base) rays.push_back({end - observation.camera_base, Ray::Kind::kDark});
   for (const auto& directions : {std::cref(observation.saturated_base), std::cref(observation.unknown_base)})

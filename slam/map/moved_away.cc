@@ -9,8 +9,7 @@
 namespace merlin {
 namespace {
 
-constexpr float kBlock_m = 1.0f;  // square columns of voxels that are in sight, or not, together
-
+constexpr float kBlock_m = 1.0f;   // square columns of voxels that are in sight, or not, together
 constexpr float kFloor_m = 0.06f;  // what is no higher may be floor
 constexpr int kMost = 2, kLeast = -3;
 constexpr float kAslant = 0.15f;       // cosine; flatter surfaces show behind themselves by the error of a pose...
@@ -85,7 +84,7 @@ bool MayBeSeen(const Eigen::Vector3f& middle_view, const ClearView& view) {
 
 class Evidence {
  public:
-  explicit Evidence(std::span<const Voxel> voxels) : all_(InBlocks(voxels)), weighed_(voxels.size(), 0) {}
+  explicit Evidence(std::span<const Voxel> voxels) : all_(InBlocks(voxels)), weighed_(voxels.size(), kMost) {}  // a point fell in: seen
 
   void Add(const ClearView& view, const Eigen::Isometry3f& T_base_map) {
     const Eigen::Matrix3f R = view.R_view_base() * T_base_map.linear();

@@ -88,24 +88,6 @@ TEST(Avoid, LimitsTheSpeedSoThatBrakingEndsAtTheGap) {
   EXPECT_NEAR(avoid.SpeedLimit_m_s(config.stop_gap_m + 0.4), std::sqrt(0.4), 1e-12);
 }
 
-TEST(Footprint, ReachesToTheFarthestCollisionShapeInTheBaseFrame) {
-  CarDescription car;
-  car.links.resize(2);
-  car.links[0].name = car.links[1].parent = "base_link";
-  car.links[1].name = "nose";
-  car.links[1].T_parent_link.translation() = Eigen::Vector3d(0.3, 0.0, 0.1);
-  CarShape box;
-  box.size_m = {0.2, 0.3, 0.1};
-  box.T_link_shape.translation() = Eigen::Vector3d(0.05, 0.0, 0.0);
-  car.links[1].collision.push_back(box);
-  EXPECT_NEAR(FootprintOf(car).front_m, 0.45, 1e-12);
-  EXPECT_NEAR(FootprintOf(car).half_width_m, 0.15, 1e-12);
-  EXPECT_NEAR(FootprintOf(car).height_m, 0.15, 1e-12);
-  box.size_m = {0.02, 0.02, 1.0};  // a mast
-  car.links[1].collision.push_back(box);
-  EXPECT_NEAR(FootprintOf(car).height_m, 0.15, 1e-12);
-}
-
 TEST(Avoid, SeesNoFreeWayWhereTheCameraLooksAside) {
   Avoid avoid({.front_m = 0.45, .half_width_m = 0.15}, {});
   const std::vector<Eigen::Vector2d> ahead{{0.0, 0.0}, {4.0, 0.0}};

@@ -97,7 +97,7 @@ TEST(Project, KeepsSaturatedPixelsAsDirections) {
 TEST(RangeSigma, GivesTheHandComputedMillimetres) {
   for (const auto& [distance_m, sigma_mm] : {std::pair(1.0, 1.9), {2.0, 4.3}, {3.0, 7.4}, {4.0, 11.3}, {5.0, 16.2}, {7.0, 29.1}}) {
     const double amplitude_e = 0.45 * 2000.0 * 0.5 * 1000.0 / (distance_m * distance_m);
-    EXPECT_NEAR(1e3 * RangeSigma_m(amplitude_e, Sheet(), {1e-3, 20e6}), sigma_mm, 0.03 * sigma_mm + 0.05) << distance_m;
+    EXPECT_NEAR(1e3 * RangeSigma(Sheet(), {1e-3, 20e6}).Of_m(amplitude_e), sigma_mm, 0.03 * sigma_mm + 0.05) << distance_m;
   }
 }
 

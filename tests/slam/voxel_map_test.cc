@@ -100,7 +100,7 @@ TEST(VoxelMap, WeighsPointsByTheirPrecision) {
 }
 
 TEST(VoxelMap, TakesTheColourOfTheBestView) {
-  std::vector<Point> wall, red;
+  std::vector<Point> wall;
   for (int i = 0; i < 20; ++i)
     for (int j = 0; j < 20; ++j) wall.push_back({.position = {0.5f, 0.025f * i + 0.0125f, 0.025f * j + 0.0125f}, .sigma_m = 0.01f});
   VoxelMap map({});
