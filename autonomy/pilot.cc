@@ -7,14 +7,14 @@
 namespace merlin {
 namespace {
 
-constexpr double kPathStep_m = 0.05;
+constexpr double kPlannedStep_m = 0.05;
 constexpr double kStraight_m = 4.0;
 constexpr double kLapEnd_m = 1.5;  // beyond the line and beside it, at most: no farther than half a corridor
 
 // Samples of a straight line from a point, direction as angle.
 void AddStraight(std::vector<Eigen::Vector2d>& path, const Eigen::Vector2d& from, double yaw_rad, double length_m) {
   const Eigen::Vector2d direction(std::cos(yaw_rad), std::sin(yaw_rad));
-  for (double s = 0.0; s < length_m; s += kPathStep_m) path.push_back(from + s * direction);
+  for (double s = 0.0; s < length_m; s += kPlannedStep_m) path.push_back(from + s * direction);
 }
 
 std::size_t NearestIndex(const std::vector<Eigen::Vector2d>& path, const Eigen::Vector2d& p) {
@@ -70,7 +70,7 @@ void Pilot::PlanTurn(const Corridor& corridor, const Pose& T_map_base, double si
   };
   path_map_.clear();
   AddStraight(path_map_, at(std::min(0.0, arc_begin_m), 0.0), corridor.yaw_rad, std::max(0.0, arc_begin_m));
-  for (double angle = 0.0; angle < 0.5 * std::numbers::pi; angle += kPathStep_m / radius_m)
+  for (double angle = 0.0; angle < 0.5 * std::numbers::pi; angle += kPlannedStep_m / radius_m)
     path_map_.push_back(at(arc_begin_m + radius_m * std::sin(angle), side * radius_m * (1.0 - std::cos(angle))));
   hint_.yaw_rad = WrapPi(corridor.yaw_rad + side * 0.5 * std::numbers::pi);
   AddStraight(path_map_, at(arc_begin_m + radius_m, side * radius_m), hint_.yaw_rad, kStraight_m);

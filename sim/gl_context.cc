@@ -16,7 +16,7 @@ namespace {
 // Of the EGL 1.5 registry and OSMesa's header, the few numbers used here.
 constexpr unsigned kEglPlatformSurfaceless = 0x31DD, kEglOpenGlApi = 0x30A2;
 constexpr std::int32_t kEglSurfaceType = 0x3033, kEglRenderableType = 0x3040, kEglOpenGlBit = 0x0008, kEglNone = 0x3038;
-constexpr unsigned kOsmesaRgba = 0x1908, kGlUnsignedByte = 0x1401, kGlRenderer = 0x1F01;
+constexpr unsigned kOsmesaRgba = 0x1908, kOsmesaUnsignedByte = 0x1401, kGlRenderer = 0x1F01;
 
 using EglHandle = void*;
 using GetString = const unsigned char* (*)(unsigned);
@@ -115,8 +115,8 @@ void GlContext::OpenOsmesa() {
   get_ = get_proc;
   // OSMesa wants a colour buffer; the picture goes to MuJoCo's own, so one pixel is enough.
   const auto pixel = std::make_shared<std::array<std::uint8_t, 4>>();
-  make_current_ = [=] { Require(make_current(context, pixel->data(), kGlUnsignedByte, 1, 1), "OSMesaMakeCurrent"); };
-  release_ = [=] { make_current(nullptr, nullptr, kGlUnsignedByte, 0, 0); };
+  make_current_ = [=] { Require(make_current(context, pixel->data(), kOsmesaUnsignedByte, 1, 1), "OSMesaMakeCurrent"); };
+  release_ = [=] { make_current(nullptr, nullptr, kOsmesaUnsignedByte, 0, 0); };
   destroy_ = [=] { destroy(context); };
   const Current current(*this);
   name_ = "OSMesa: " + RendererName(reinterpret_cast<GetString>(get_proc("glGetString")));

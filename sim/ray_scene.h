@@ -16,6 +16,7 @@
 namespace merlin::sim {
 
 constexpr int kNoFace = -1, kCurvedFace = -2;
+constexpr float kClear_m = 1e-3f;  // a ray begins this far off the surface that it leaves
 
 struct RayHit {
   float range_m = -1.0f;            // along the unit direction; negative: nothing within reach

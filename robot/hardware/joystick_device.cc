@@ -16,7 +16,7 @@
 namespace merlin {
 namespace {
 
-constexpr std::size_t kRead_bytes = 64 * joystick::kEvent_bytes;  // as many as the kernel keeps
+constexpr std::size_t kEvents_bytes = 64 * joystick::kEvent_bytes;  // as many as the kernel keeps
 constexpr int kReadsMax = 16;  // in a row: a pipe that is never empty must not hold up the car
 
 int Open(const std::filesystem::path& device) {
@@ -55,7 +55,7 @@ bool JoystickDevice::Read() {
     if (fd_ < 0) return false;
     decoder_ = {};  // the kernel tells a new reader where everything is
   }
-  std::array<std::uint8_t, kRead_bytes> buffer;
+  std::array<std::uint8_t, kEvents_bytes> buffer;
   for (int reads = 0; reads < kReadsMax; ++reads) {
     const ssize_t size = read(fd_, buffer.data(), buffer.size());
     if (size > 0) {

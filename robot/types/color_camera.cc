@@ -1,22 +1,15 @@
 #include "robot/types/color_camera.h"
 
-#include <sstream>
-
 #include "robot/types/error.h"
+#include "robot/types/text_fields.h"
 
 namespace merlin {
 namespace {
 
-std::string Text(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 void RequireWithin(const ColorCameraSheet& sheet, const std::string& what, const std::string& unit, double value,
                    double min, double max) {
   if (!(value >= min && value <= max))
-    throw InputError(sheet.name, "invalid " + what, Text(min) + " to " + Text(max) + unit, Text(value) + unit);
+    throw InputError(sheet.name, "invalid " + what, NumberText(min) + " to " + NumberText(max) + unit, NumberText(value) + unit);
 }
 
 }  // namespace

@@ -2,27 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+
+#include "robot/types/text_fields.h"
 
 namespace merlin {
 namespace {
 
-std::string Text(double number) {
-  std::ostringstream text;
-  text << number;
-  return text.str();
-}
-
 std::string ValidFrequencies_mhz(const DepthCameraSheet& sheet) {
   std::string list;
-  for (const double frequency_hz : sheet.frequencies_hz) list += (list.empty() ? "" : " or ") + Text(frequency_hz * 1e-6);
+  for (const double frequency_hz : sheet.frequencies_hz) list += (list.empty() ? "" : " or ") + NumberText(frequency_hz * 1e-6);
   return list;
 }
 
 void CheckFrequency(const DepthCameraSheet& sheet, double frequency_hz) {
   if (std::ranges::find(sheet.frequencies_hz, frequency_hz) == sheet.frequencies_hz.end())
     throw InputError(sheet.name, "invalid modulation frequency", ValidFrequencies_mhz(sheet) + " MHz",
-                     Text(frequency_hz * 1e-6) + " MHz");
+                     NumberText(frequency_hz * 1e-6) + " MHz");
 }
 
 double NearestFrequency_hz(const DepthCameraSheet& sheet, double frequency_hz) {
@@ -35,14 +30,14 @@ double NearestFrequency_hz(const DepthCameraSheet& sheet, double frequency_hz) {
 void CheckSettings(const DepthCameraSheet& sheet, const DepthSettings& settings) {
   if (!(settings.integration_s >= sheet.integration_min_s && settings.integration_s <= sheet.integration_max_s))
     throw InputError(sheet.name, "invalid integration time",
-                     Text(sheet.integration_min_s * 1e6) + " to " + Text(sheet.integration_max_s * 1e6) + " us",
-                     Text(settings.integration_s * 1e6) + " us");
+                     NumberText(sheet.integration_min_s * 1e6) + " to " + NumberText(sheet.integration_max_s * 1e6) + " us",
+                     NumberText(settings.integration_s * 1e6) + " us");
   CheckFrequency(sheet, settings.frequency_hz);
   if (settings.second_frequency_hz == 0.0) return;
   CheckFrequency(sheet, settings.second_frequency_hz);
   if (settings.second_frequency_hz == settings.frequency_hz)
     throw InputError(sheet.name, "both modulation frequencies are the same", "two that differ",
-                     Text(settings.frequency_hz * 1e-6) + " MHz twice");
+                     NumberText(settings.frequency_hz * 1e-6) + " MHz twice");
 }
 
 DepthSettings NearestSettings(const DepthCameraSheet& sheet, const DepthSettings& settings) {

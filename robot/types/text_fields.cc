@@ -35,6 +35,12 @@ std::string Quoted(std::string_view field) {
   return shown + (field.size() > kLongest ? "...'" : "'");
 }
 
+std::string NumberText(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
 std::string LinesOf(const std::vector<std::size_t>& lines) {
   constexpr std::size_t kMost = 12;
   std::string text = lines.size() == 1 ? "line " : "lines ";

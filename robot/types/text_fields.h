@@ -24,6 +24,9 @@ void ForEachLine(std::string_view text, Each each) {
 // A field for an error message: quoted, cut where it is long, without control characters or bytes that are not ASCII.
 std::string Quoted(std::string_view field);
 
+// A number for a message, with up to six digits: "0.25", "1e+07".
+std::string NumberText(double number);
+
 // "line 4", "lines 4, 7, 9", for a warning; the first dozen where there are more.
 std::string LinesOf(const std::vector<std::size_t>& lines);
 

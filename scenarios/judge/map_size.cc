@@ -11,9 +11,7 @@ namespace merlin {
 namespace {
 
 constexpr double kHeightMin_m = 0.3;
-constexpr double kHeightMax_m = 2.0;
 constexpr double kReach_m = 1.5;
-constexpr double kNormalRadius_m = 0.15;
 const double kNormalCosine = std::cos(20.0 * std::numbers::pi / 180.0);
 constexpr double kBin_m = 0.02;
 constexpr int kBins = 150;  // over +-kReach_m
@@ -29,7 +27,7 @@ bool IsOfWall(const Eigen::Vector3d& normal, const OutlineWall& wall) {
 std::vector<std::vector<double>> OffsetsFromWalls(const PointGrid& grid, const std::vector<OutlineWall>& walls) {
   std::vector<std::vector<double>> offsets_m(walls.size());
   for (const Eigen::Vector3d& p : grid.points()) {
-    if (p.z() < kHeightMin_m || p.z() > kHeightMax_m) continue;
+    if (p.z() < kHeightMin_m || p.z() > kWallTop_m) continue;
     std::optional<Eigen::Vector3d> normal;
     for (std::size_t k = 0; k < walls.size(); ++k) {
       if (walls[k].Distance_m(p.head<2>()) > kReach_m) continue;

@@ -20,8 +20,6 @@ constexpr double kHitTolerance_m = 0.05;
 constexpr double kShownReach_m = 0.10;
 constexpr double kShownHeightMin_m = 0.1;
 constexpr double kWallHeightMin_m = 0.3;
-constexpr double kHeightMax_m = 2.0;
-constexpr double kNormalRadius_m = 0.15;
 const double kLevelSine = std::sin(20.0 * std::numbers::pi / 180.0);
 constexpr std::size_t kJudgedMax = 20000;  // bounds the rays
 
@@ -72,7 +70,7 @@ double DistanceToSurface_m(const Eigen::Vector3d& p, const Eigen::Vector3d& norm
 std::optional<double> CoveragePercent(std::span<const MapPoint> map, const Pose& T_world_map, const Outline& outline,
                                       const Trajectory& truth, const TrueRange& true_range) {
   std::vector<Eigen::Vector3d> points = ToWorld(map, T_world_map);
-  std::erase_if(points, [](const Eigen::Vector3d& p) { return p.z() < kShownHeightMin_m || p.z() > kHeightMax_m; });
+  std::erase_if(points, [](const Eigen::Vector3d& p) { return p.z() < kShownHeightMin_m || p.z() > kWallTop_m; });
   std::transform(points.begin(), points.end(), points.begin(), FromAbove);
   const PointGrid grid(std::move(points), kShownReach_m);
   const std::vector<Eigen::Vector3d> eyes = Eyes(truth);
@@ -92,7 +90,7 @@ std::optional<double> MapToPlanP95_m(std::span<const MapPoint> map, const Pose& 
                                      const TrueRange& true_range) {
   std::vector<Eigen::Vector3d> points = ToWorld(map, T_world_map);
   std::vector<Eigen::Vector3d> candidates = points;
-  std::erase_if(candidates, [](const Eigen::Vector3d& p) { return p.z() < kWallHeightMin_m || p.z() > kHeightMax_m; });
+  std::erase_if(candidates, [](const Eigen::Vector3d& p) { return p.z() < kWallHeightMin_m || p.z() > kWallTop_m; });
   const PointGrid grid(std::move(points), kNormalRadius_m);
   const std::size_t step = (candidates.size() + kJudgedMax - 1) / kJudgedMax;
   std::vector<double> distances_m;

@@ -16,6 +16,9 @@
 
 namespace merlin {
 
+constexpr double kWallTop_m = 2.0;        // what stands higher is not judged as wall
+constexpr double kNormalRadius_m = 0.15;  // around a point, of the neighbours that give its normal (design: map_size_m)
+
 // The map's points in the world's frame; those that are not finite, or beyond 1e6 m, are left out.
 std::vector<Eigen::Vector3d> ToWorld(std::span<const MapPoint> map, const Pose& T_world_map);
 

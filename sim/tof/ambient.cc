@@ -11,7 +11,6 @@
 namespace merlin::sim {
 namespace {
 
-constexpr float kClear_m = 1e-3f;
 constexpr double kSkyShare = 0.1;  // engineering guess: irradiance of a clear sky at 870 nm, relative to the sun's
 constexpr float kSkyDistance_m = 100.0f;
 

@@ -8,7 +8,6 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kTableSize = 1024;
 constexpr std::uint16_t kPatternPurpose = 1;  // of sim/random.h: not the stream of any frame
 
@@ -58,7 +57,7 @@ double WigglingError_rad(double phase_rad, const DepthCameraErrors& errors) {
   const std::complex<double> z = std::polar(1.0, phase_rad), z3 = z * z * z, z5 = z3 * z * z;
   const double in_phase = z.real() + errors.harmonic_3 * z3.real() + errors.harmonic_5 * z5.real();
   const double quadrature = z.imag() - errors.harmonic_3 * z3.imag() + errors.harmonic_5 * z5.imag();
-  return std::remainder(std::atan2(quadrature, in_phase) - phase_rad, 2.0 * kPi);
+  return std::remainder(std::atan2(quadrature, in_phase) - phase_rad, 2.0 * std::numbers::pi);
 }
 
 WigglingCorrection::WigglingCorrection(const DepthCameraErrors& errors, double frequency_hz)
@@ -66,10 +65,10 @@ WigglingCorrection::WigglingCorrection(const DepthCameraErrors& errors, double f
   // A sinusoid of this peak has the residual's rms.
   const double peak_rad = std::abs(errors.harmonic_3 - errors.harmonic_5);
   const double residual_rad =
-      errors.wiggling_residual_m * std::numbers::sqrt2 * 4.0 * kPi * frequency_hz / kSpeedOfLight_m_s;
+      errors.wiggling_residual_m * std::numbers::sqrt2 * 4.0 * std::numbers::pi * frequency_hz / kSpeedOfLight_m_s;
   const double taken_off = peak_rad > residual_rad ? 1.0 - residual_rad / peak_rad : 0.0;
   for (int i = 0; i <= kTableSize; ++i) {
-    const double decoded_rad = 2.0 * kPi * i / kTableSize;
+    const double decoded_rad = 2.0 * std::numbers::pi * i / kTableSize;
     double phase_rad = decoded_rad;  // fixed point: the slope of the error is about 4 (a3 - a5), below 1
     for (int step = 0; step < 30; ++step) phase_rad = decoded_rad - WigglingError_rad(phase_rad, errors);
     table_rad_.push_back(taken_off * WigglingError_rad(phase_rad, errors));
@@ -77,16 +76,16 @@ WigglingCorrection::WigglingCorrection(const DepthCameraErrors& errors, double f
 }
 
 double WigglingCorrection::operator()(double phase_rad) const {
-  const double at = phase_rad / (2.0 * kPi) * kTableSize;
+  const double at = phase_rad / (2.0 * std::numbers::pi) * kTableSize;
   const int i = std::clamp(static_cast<int>(at), 0, kTableSize - 1);
   const double share = at - i;
   return (1.0 - share) * table_rad_[static_cast<std::size_t>(i)] + share * table_rad_[static_cast<std::size_t>(i) + 1];
 }
 
 double WigglingCorrection::Slope(double phase_rad) const {
-  constexpr double kStep_rad = 2.0 * kPi / kTableSize;
-  const double middle_rad = phase_rad - 2.0 * kPi * std::floor(phase_rad / (2.0 * kPi));
-  const double low_rad = std::max(0.0, middle_rad - kStep_rad), high_rad = std::min(2.0 * kPi, middle_rad + kStep_rad);
+  constexpr double kStep_rad = 2.0 * std::numbers::pi / kTableSize;
+  const double middle_rad = phase_rad - 2.0 * std::numbers::pi * std::floor(phase_rad / (2.0 * std::numbers::pi));
+  const double low_rad = std::max(0.0, middle_rad - kStep_rad), high_rad = std::min(2.0 * std::numbers::pi, middle_rad + kStep_rad);
   return ((*this)(high_rad) - (*this)(low_rad)) / (high_rad - low_rad);
 }
 

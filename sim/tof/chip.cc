@@ -7,8 +7,6 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // Above this mean, shot and read noise are one Gaussian: half the random numbers.
 constexpr double kGaussianAbove_e = 50.0;
 
@@ -82,8 +80,8 @@ PhaseReading DecodePhase(const Taps taps[4]) {
   const double I = D(0) - D(2);
   const double Q = D(3) - D(1);
   double phase_rad = std::atan2(Q, I);
-  if (phase_rad < 0.0) phase_rad += 2.0 * kPi;
-  if (phase_rad >= 2.0 * kPi) phase_rad = 0.0;  // -tiny + 2 pi
+  if (phase_rad < 0.0) phase_rad += 2.0 * std::numbers::pi;
+  if (phase_rad >= 2.0 * std::numbers::pi) phase_rad = 0.0;  // -tiny + 2 pi
   return {.phase_rad = phase_rad, .amplitude_e = std::sqrt(I * I + Q * Q) / 2.0};
 }
 
@@ -100,7 +98,7 @@ bool Inconsistent(const Taps taps[4], double amplitude_e, double read_noise_e) {
 }
 
 double RangeSigma_m(double signal_e, double background_e, double contrast, double read_noise_e, double frequency_hz) {
-  return kSpeedOfLight_m_s / (4.0 * std::numbers::sqrt2 * kPi * frequency_hz) *
+  return kSpeedOfLight_m_s / (4.0 * std::numbers::sqrt2 * std::numbers::pi * frequency_hz) *
          std::sqrt(signal_e + background_e + 2.0 * read_noise_e * read_noise_e) / (contrast * signal_e);
 }
 

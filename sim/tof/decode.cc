@@ -8,7 +8,6 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 double Wrapped(double range_m, double period_m) {
   const double wrapped = range_m - period_m * std::floor(range_m / period_m);
@@ -58,7 +57,7 @@ DepthFrame Decoder::EmptyFrame(Time stamp, std::uint64_t index) const {
 
 double Decoder::Range_m(double phase_rad, const Wave& wave, double known_m) const {
   if (wave.correction != nullptr) phase_rad -= (*wave.correction)(phase_rad);
-  return Wrapped(phase_rad / (2.0 * kPi) * wave.period_m - known_m, wave.period_m);
+  return Wrapped(phase_rad / (2.0 * std::numbers::pi) * wave.period_m - known_m, wave.period_m);
 }
 
 void Decoder::Decode(std::span<const Taps> taps, bool lit, std::size_t pixel, DepthFrame& frame) const {

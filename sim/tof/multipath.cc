@@ -13,7 +13,6 @@ namespace merlin::sim {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kClear_m = 1e-3f;
 constexpr float kFaint = 2e-3f;  // of what comes from all lights: no ray asks whether so faint a one is hidden
 constexpr float kSameNormal = 0.95f, kSamePlane_m = 0.05f;
 

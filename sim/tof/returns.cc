@@ -8,7 +8,6 @@ namespace merlin::sim {
 namespace {
 
 constexpr double kGlassIndex = 1.52;  // soda-lime float glass
-constexpr float kClear_m = 1e-3f;     // a ray begins this far off the surface it leaves
 
 struct Leg {
   ExtraReturn extra;

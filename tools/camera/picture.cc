@@ -13,7 +13,7 @@ namespace merlin {
 namespace {
 
 constexpr double kImage_px = 620;  // the longer edge of each picture, about
-constexpr double kMargin_px = 40, kHeader_px = 100, kCaption_px = 34, kBar_px = 160;
+constexpr double kMargin_px = 40, kTitle_px = 100, kCaption_px = 34, kBar_px = 160;
 constexpr double kOutliers = 0.02;  // of the pixels may lie beyond a scale's end
 const cv::Scalar kInk(45, 40, 38);
 const cv::Vec3b kNothing(150, 150, 150);
@@ -115,12 +115,12 @@ std::string ToPng(const Measurement& m, const std::string& title, const std::str
   const int scale = std::max(1, static_cast<int>(kImage_px / std::max(m.last.width, m.last.height)));
   const double width_px = m.last.width * scale, height_px = m.last.height * scale;
   const double column_px = std::max(width_px, 360.0) + kBar_px, row_px = height_px + kCaption_px + kMargin_px;
-  Canvas canvas(static_cast<int>(kMargin_px + 2.0 * column_px), static_cast<int>(kHeader_px + 2.0 * row_px));
+  Canvas canvas(static_cast<int>(kMargin_px + 2.0 * column_px), static_cast<int>(kTitle_px + 2.0 * row_px));
   canvas.Text({kMargin_px, 46}, title, 19, kInk, Align::kLeft, true);
   canvas.Text({kMargin_px, 78}, subtitle, 12, kInk);
   int i = 0;
   for (const View& view : Views(m)) {
-    const Eigen::Vector2d corner_px(kMargin_px + (i % 2) * column_px, kHeader_px + (i / 2) * row_px + kCaption_px);
+    const Eigen::Vector2d corner_px(kMargin_px + (i % 2) * column_px, kTitle_px + (i / 2) * row_px + kCaption_px);
     canvas.Text(corner_px - Eigen::Vector2d(0, 12), view.caption, 13, kInk);
     canvas.Picture(corner_px, Colored(view, m.last.width), scale);
     DrawBar(canvas, view, corner_px + Eigen::Vector2d(width_px + 14, 0), height_px);

@@ -54,6 +54,12 @@ sim::TofEffects Only(std::initializer_list<bool sim::TofEffects::*> on, bool cal
   return effects;
 }
 
+StudyCamera OnePixel(StudyCamera camera) {
+  camera.sheet = Cropped(camera.sheet, 1, 1);
+  camera.settings.second_frequency_hz = 0.0;
+  return camera;
+}
+
 DepthCameraSheet Cropped(DepthCameraSheet sheet, int width, int height) {
   sheet.camera.width = std::min(width, sheet.camera.width);
   sheet.camera.height = std::min(height, sheet.camera.height);

@@ -10,8 +10,6 @@
 namespace merlin::study {
 namespace {
 
-using Phasor = std::complex<double>;
-constexpr double kPi = std::numbers::pi;
 
 // Two walls that meet at a right angle on the axis, this far away; the axis halves the angle.
 struct Corner {
@@ -36,8 +34,8 @@ Stage CornerStage(double distance_m, double albedo) {
   const double along = kLength_m / std::numbers::sqrt2, behind = kThickness_m / std::numbers::sqrt2;
   return BuildStage(fmt::format("<geom type='box' size='{0} {1} {0}' pos='{2} {3} 0' euler='0 0 {4}'/><geom type='box' "
                                 "size='{0} {1} {0}' pos='{2} {5} 0' euler='0 0 {6}'/>",
-                                kLength_m, kThickness_m, distance_m - along + behind, along + behind, 0.75 * kPi,
-                                -along - behind, 0.25 * kPi),
+                                kLength_m, kThickness_m, distance_m - along + behind, along + behind, 0.75 * std::numbers::pi,
+                                -along - behind, 0.25 * std::numbers::pi),
                     {{.nir_albedo = albedo}, {.nir_albedo = albedo}});
 }
 
@@ -63,7 +61,7 @@ double Bulge_m(const StudyCamera& camera, const Corner& corner, double albedo, d
       const Eigen::Vector3d to_p = p.position - q.position;
       const double r = to_p.norm(), cos_q = q.normal.dot(to_p) / r, cos_p = -p.normal.dot(to_p) / r;
       if (cos_q <= 0.0 || cos_p <= 0.0) continue;
-      sum += std::polar(albedo / kPi * solid_angle * cos_q * cos_p / (r * r),
+      sum += std::polar(albedo / std::numbers::pi * solid_angle * cos_q * cos_p / (r * r),
                         Phase_rad(camera, 0.5 * (q.position.norm() + r + d_p)));
     }
   return RangeOf_m(camera, std::arg(sum * std::polar(1.0, -Phase_rad(camera, d_p))));
@@ -85,7 +83,7 @@ Figure Multipath(const StudyCamera& of) {
     Series dots{.name = "samples", .dots = true, .color = color++};
     const int row = lens.height / 2, step = std::max(1, lens.width / 32);
     for (int u = 0; u < lens.width; u += step) {
-      const double angle_deg = std::atan((u - lens.cx_px) / lens.fx_px) * 180.0 / kPi;
+      const double angle_deg = std::atan((u - lens.cx_px) / lens.fx_px) * 180.0 / std::numbers::pi;
       const auto p = static_cast<std::size_t>(row * lens.width + u);
       const double error_m =
           UnwrapNear(frame.last.range_m[p] - frame.truth.range_m[p], 0.0, UnambiguousRange_m(camera.settings));

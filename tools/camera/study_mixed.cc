@@ -10,16 +10,7 @@
 namespace merlin::study {
 namespace {
 
-using Phasor = std::complex<double>;
-
-constexpr double kPi = std::numbers::pi;
 constexpr double kEdgeTurn_rad = 0.32175;  // atan(1/3): the nine sub-rays meet the edge one after the other
-
-StudyCamera OnePixel(StudyCamera camera) {
-  camera.sheet = Cropped(camera.sheet, 1, 1);
-  camera.settings.second_frequency_hz = 0.0;
-  return camera;
-}
 
 Phasor Return(const StudyCamera& camera, double amplitude, double range_m) {
   return std::polar(amplitude / (range_m * range_m), Phase_rad(camera, range_m));
@@ -27,7 +18,7 @@ Phasor Return(const StudyCamera& camera, double amplitude, double range_m) {
 
 double RangeOfSum_m(const StudyCamera& camera, const Phasor& sum) {
   const double phase = std::arg(sum);
-  return RangeOf_m(camera, phase < 0.0 ? phase + 2.0 * kPi : phase);
+  return RangeOf_m(camera, phase < 0.0 ? phase + 2.0 * std::numbers::pi : phase);
 }
 
 // Share of a square of unit edge that lies below an edge line: turned, and shifted along its normal from the middle.
@@ -115,7 +106,7 @@ Figure Glass(const StudyCamera& of) {
     }
     return sum;
   };
-  const double degree = kPi / 180.0;
+  const double degree = std::numbers::pi / 180.0;
   for (const double angle_deg : Steps(0.0, 80.0, 200)) {
     const Phasor sum = sum_at(angle_deg * degree);
     law.Add(angle_deg, RangeOfSum_m(camera, sum));

@@ -1,17 +1,24 @@
 // What the studies share: cameras that look at little, one frame without noise, the sheet's laws.
 #pragma once
 
+#include <complex>
+
 #include "sim/tof/effects.h"
 #include "tools/camera/measure.h"
 #include "tools/camera/study.h"
 
 namespace merlin::study {
 
+using Phasor = std::complex<double>;
+
 // No effect but these.
 sim::TofEffects Only(std::initializer_list<bool sim::TofEffects::*> on, bool calibrated = true);
 
 // The middle of the picture alone, this many pixels wide and high: same lens and chip, less to compute.
 DepthCameraSheet Cropped(DepthCameraSheet sheet, int width, int height);
+
+// The camera's middle pixel alone, at its first modulation frequency.
+StudyCamera OnePixel(StudyCamera camera);
 
 Shooting ShootingOf(const StudyCamera& camera, const sim::TofEffects& effects, int frames);
 

@@ -9,18 +9,12 @@
 namespace merlin::study {
 namespace {
 
-constexpr double kWall_m = 12.0;
-
-StudyCamera OnePixel(StudyCamera camera) {
-  camera.sheet = Cropped(camera.sheet, 1, 1);
-  camera.settings.second_frequency_hz = 0.0;
-  return camera;
-}
+constexpr double kFarWall_m = 12.0;
 
 // Measured less true range at this distance from the wall.
 double Error_m(const StudyCamera& camera, const sim::TofEffects& effects, Stage& wall, double distance_m,
                double speed_away_m_s) {
-  wall.T_world_optical.translation().x() = kWall_m - distance_m;
+  wall.T_world_optical.translation().x() = kFarWall_m - distance_m;
   const Measurement frame = OneFrame(camera, effects, wall.View({-speed_away_m_s, 0.0, 0.0}));
   return UnwrapNear(MiddleRange_m(frame) - distance_m, 0.0, UnambiguousRange_m(camera.settings));
 }
@@ -30,7 +24,7 @@ double Error_m(const StudyCamera& camera, const sim::TofEffects& effects, Stage&
 Figure Wiggling(const StudyCamera& of) {
   const StudyCamera camera = OnePixel(of);
   const double wrap_m = UnambiguousRange_m(camera.settings);
-  Stage wall = WallStage({.distance_m = kWall_m});
+  Stage wall = WallStage({.distance_m = kFarWall_m});
   Series law{.name = "closed form", .color = 0};
   Series raw{.name = "before calibration", .dots = true, .color = 0},
       rest{.name = "after calibration", .dots = true, .color = 1};
@@ -63,7 +57,7 @@ double MovingError_m(const StudyCamera& camera, double range_m, double speed_m_s
 Figure Motion(const StudyCamera& of) {
   const StudyCamera camera = OnePixel(of);
   const double step_s = camera.settings.integration_s + camera.sheet.readout_s;
-  Stage wall = WallStage({.distance_m = kWall_m});
+  Stage wall = WallStage({.distance_m = kFarWall_m});
   Panel panel{.x = {"distance at mid-exposure [m]"}, .y = {"measured less true range [mm]"}};
   int color = 0;
   for (const double speed_m_s : {0.5, 1.0, 2.0}) {

@@ -15,12 +15,12 @@ namespace merlin {
 namespace {
 
 constexpr char kRoom[] = "room_7x10";
-constexpr double kSpeed_m_s = 0.5, kSteering_rad = 0.2;
+constexpr double kBenchSpeed_m_s = 0.5, kBenchSteering_rad = 0.2;
 
 // To and fro in a bend, so that wheels roll, turn and brake, and nothing is hit.
 void Drive(sim::World& world) {
   const double side = world.Now() / std::chrono::milliseconds(800) % 2 == 0 ? 1.0 : -1.0;
-  world.drive().Send({.speed_m_s = side * kSpeed_m_s, .steering_rad = kSteering_rad, .valid_for = std::chrono::seconds(1)},
+  world.drive().Send({.speed_m_s = side * kBenchSpeed_m_s, .steering_rad = kBenchSteering_rad, .valid_for = std::chrono::seconds(1)},
                      world.Now());
 }
 

@@ -17,16 +17,16 @@ namespace {
 
 constexpr std::size_t kRead_bytes = 4096;
 
-[[noreturn]] void Fail(const std::string& what) {
+[[noreturn]] void FailPort(const std::string& what) {
   throw MachineError("pseudo-terminal: " + what + ": " + std::strerror(errno));
 }
 
 // Bytes as they are, from the start: an echo before the program comes would be read as a command.
 void MakeRaw(int fd) {
   termios settings{};
-  if (tcgetattr(fd, &settings) != 0) Fail("its settings cannot be read");
+  if (tcgetattr(fd, &settings) != 0) FailPort("its settings cannot be read");
   cfmakeraw(&settings);
-  if (tcsetattr(fd, TCSANOW, &settings) != 0) Fail("it cannot be set raw");
+  if (tcsetattr(fd, TCSANOW, &settings) != 0) FailPort("it cannot be set raw");
 }
 
 }  // namespace
@@ -41,10 +41,10 @@ void PseudoTerminal::Open() {
   std::array<char, 128> name{};
   if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
       ptsname_r(master_, name.data(), name.size()) != 0)
-    Fail("none to be had");
+    FailPort("none to be had");
   port_ = name.data();
   slave_ = open(port_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-  if (slave_ < 0) Fail("its port cannot be opened");
+  if (slave_ < 0) FailPort("its port cannot be opened");
   MakeRaw(slave_);
   if (link_.empty()) return;
   std::error_code error;
