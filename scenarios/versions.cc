@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 #include <opencv2/core/version.hpp>
-#if MERLIN_TWIN
-#include <embree3/rtcore.h>
+
 #include <mujoco/mujoco.h>
-#endif
+
+#include "sim/embree.h"
 
 namespace merlin {
 
@@ -13,10 +13,8 @@ std::vector<std::pair<std::string, std::string>> Versions() {
   const auto dotted = [](int a, int b, int c) { return std::to_string(a) + "." + std::to_string(b) + "." + std::to_string(c); };
   return {
       {"merlin", MERLIN_VERSION},
-#if MERLIN_TWIN
       {"mujoco", mj_versionString()},
       {"embree", RTC_VERSION_STRING},
-#endif
       {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"opencv", CV_VERSION},
       {"compiler", __VERSION__},

@@ -1,7 +1,5 @@
 #include "sim/ray_scene.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -11,6 +9,7 @@
 #include <utility>
 
 #include "robot/types/error.h"
+#include "sim/embree.h"
 #include "sim/ray_group.h"
 
 namespace merlin::sim {
@@ -191,13 +190,46 @@ struct Lanes {
   alignas(32) int valid[kPacket];
 };
 
-// coherent: rays of one place and neighbouring directions, which go down the hierarchy together.
-RTCIntersectContext Context(bool coherent) {
+// Nearest hits of rays from one place in neighbouring directions, which go down the hierarchy together (coherent); and
+// whether rays to lights meet anything, each on its own (incoherent). Embree 4 takes as arguments what 3 calls a context.
+#if MERLIN_EMBREE == 4
+void Intersect(const Lanes& lanes, RTCScene scene, RTCRayHit8& packet) {
+  RTCRayQueryContext context;
+  rtcInitRayQueryContext(&context);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  arguments.context = &context;
+  rtcIntersect8(lanes.valid, scene, &packet, &arguments);
+}
+
+void Occlude(const Lanes& lanes, RTCScene scene, RTCRay8& packet) {
+  RTCRayQueryContext context;
+  rtcInitRayQueryContext(&context);
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.context = &context;
+  rtcOccluded8(lanes.valid, scene, &packet, &arguments);
+}
+#else
+RTCIntersectContext Context(RTCIntersectContextFlags flags) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  context.flags = flags;
   return context;
 }
+
+void Intersect(const Lanes& lanes, RTCScene scene, RTCRayHit8& packet) {
+  RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  rtcIntersect8(lanes.valid, scene, &context, &packet);
+}
+
+void Occlude(const Lanes& lanes, RTCScene scene, RTCRay8& packet) {
+  RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  rtcOccluded8(lanes.valid, scene, &context, &packet);
+}
+#endif
 
 }  // namespace
 
@@ -300,7 +332,6 @@ void RayScene::Update(const BodyMotions& bodies, double dt_s) { impl_->Update(bo
 
 void RayScene::Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes) const {
   assert(rays.size() == hits.size());
-  RTCIntersectContext context = Context(true);
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const std::span<const Ray> some = rays.subspan(first, std::min<std::size_t>(kPacket, rays.size() - first));
     const Lanes lanes(some.size());
@@ -308,22 +339,21 @@ void RayScene::Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes pan
     Fill(packet.ray, some, panes);
     std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect8(lanes.valid, impl_->fixed.get(), &context, &packet);
-    if (impl_->has_instances) rtcIntersect8(lanes.valid, impl_->moving.get(), &context, &packet);
+    Intersect(lanes, impl_->fixed.get(), packet);
+    if (impl_->has_instances) Intersect(lanes, impl_->moving.get(), packet);
     for (std::size_t i = 0; i < some.size(); ++i) hits[first + i] = impl_->ReadHit(packet, i, some[i].direction);
   }
 }
 
 void RayScene::Occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Panes panes) const {
   assert(rays.size() == blocked.size());
-  RTCIntersectContext context = Context(false);
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const std::span<const Ray> some = rays.subspan(first, std::min<std::size_t>(kPacket, rays.size() - first));
     const Lanes lanes(some.size());
     RTCRay8 packet;
     Fill(packet, some, panes);
-    rtcOccluded8(lanes.valid, impl_->fixed.get(), &context, &packet);
-    if (impl_->has_instances) rtcOccluded8(lanes.valid, impl_->moving.get(), &context, &packet);
+    Occlude(lanes, impl_->fixed.get(), packet);
+    if (impl_->has_instances) Occlude(lanes, impl_->moving.get(), packet);
     for (std::size_t i = 0; i < some.size(); ++i) blocked[first + i] = packet.tfar[i] < 0.0f;
   }
 }

@@ -35,6 +35,7 @@ class Least {
   double worstDist() const { return (full() ? best_.back().squared_m2 : limit_m2_) * (1.0 + 1e-9) + kTiny_m2; }
   bool full() const { return count_ == best_.size(); }
   std::size_t size() const { return count_; }
+  void sort() const {}  // nanoflann 1.6 asks for it; they are in order already
 
  private:
   static constexpr double kTiny_m2 = std::numeric_limits<double>::min();

@@ -13,10 +13,11 @@
 #include <opencv2/core/version.hpp>
 
 #if MERLIN_TWIN
-#include <embree3/rtcore.h>
 #include <mujoco/mujoco.h>
 
 #include <boost/version.hpp>
+
+#include "sim/embree.h"
 #endif
 
 namespace merlin::cli {

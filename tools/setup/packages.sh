@@ -1,32 +1,31 @@
 # shellcheck shell=bash
-# System packages: installs those of packages-debian.txt that dpkg does not have. Sourced by tools/merlin.
+# System packages: installs those that dpkg does not have, by default of packages-debian.txt. Sourced by tools/merlin.
 
 package_list=$tools/setup/packages-debian.txt
 
 wanted_packages() { sed 's/#.*//; s/[[:space:]]//g; /^$/d' "$package_list"; }
 
 # Installed, or held at the installed version: the second letter of dpkg's status is i.
-missing_packages() {
+missing_packages() { # names...
   local installed
-  # shellcheck disable=SC2046
-  installed=$(dpkg-query -W -f '${db:Status-Abbrev}${Package}\n' $(wanted_packages) 2>/dev/null | sed -n 's/^.i. *//p') || true
-  wanted_packages | grep -vxF -- "$installed" || true
+  installed=$(dpkg-query -W -f '${db:Status-Abbrev}${Package}\n' "$@" 2>/dev/null | sed -n 's/^.i. *//p') || true
+  printf '%s\n' "$@" | grep -vxF -- "$installed" || true
 }
 
-# Debian, Ubuntu and what calls itself like them; everybody else gets the list. MERLIN_OS_RELEASE: for the tests.
+# Debian and what calls itself like it; everybody else gets the list. MERLIN_OS_RELEASE: for the tests.
 require_debian() {
   local os
   # shellcheck source=/dev/null
   os=$(. "${MERLIN_OS_RELEASE:-/etc/os-release}" 2>/dev/null && echo "${ID-} ${ID_LIKE-}") || os=unknown
-  case " $os " in *" debian "* | *" ubuntu "*) return ;; esac
-  say "set-up installs packages on Debian and Ubuntu only; here (${os% }), install what corresponds to these Debian 12 packages:"
+  case " $os " in *" debian "*) return ;; esac
+  say "set-up installs packages on Debian only; here (${os% }), install what corresponds to these Debian 12 packages:"
   wanted_packages >&2
   stop 3 "then fetch MuJoCo 4.0.0, set MUJOCO_ROOT to it, and build with: cmake --preset release && cmake --build --preset release"
 }
 
-install_packages() {
+install_packages() { # names...
   local missing log=$deps/apt-get.log as_root=() how="as root"
-  missing=$(missing_packages | tr '\n' ' ')
+  missing=$(missing_packages "$@" | tr '\n' ' ')
   [ -n "$missing" ] || return 0
   if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null ||
