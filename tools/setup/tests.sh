@@ -1,32 +1,53 @@
 # shellcheck shell=bash
-# `merlin test`: builds and runs the tests, of one name or all. Sourced by tools/merlin.
+# `merlin test`: builds and runs the tests, of one name, the suite, or everything. Sourced by tools/merlin.
 
 parse_test_arguments() {
-  test_name=
+  test_name='' test_all=''
   case $#:${1-} in
     0:) ;;
     1:-h | 1:--help) cat "$tools/cli/help.txt" && exit 0 ;;
+    1:--all) test_all=1 ;;
     2:-R) test_name=$2 ;;
-    *) stop 2 "test takes nothing, or -R NAME; got: $*" ;;
+    *) stop 2 "test takes nothing, -R NAME, or --all; got: $*" ;;
   esac
 }
 
 run_tests() {
-  passed=0 failed=0 skipped=0
-  build release
-  unlock
+  passed=0 failed=0 skipped=0 times=''
+  install_oracles
   if [ -n "$test_name" ]; then
-    require_test_named "$test_name"
-    run_ctest release -R "$test_name"
-  else
-    run_ctest release
-    lock
-    build asan unit_tests
+    timed "release build" build release all unit_tests
     unlock
-    run_ctest asan
+    require_test_named "$test_name"
+    timed "tests" run_ctest release -R "$test_name"
+  elif [ -n "$test_all" ]; then
+    test_everything
+  else
+    test_suite
   fi
+  say "times: ${times%, }"
   echo "$passed passed, $failed failed, $skipped skipped"
   [ "$failed" = 0 ]
+}
+
+# Every test once (tests/CMakeLists.txt says which runs where): what drives, draws or computes much as users build it, all
+# else under the sanitizers.
+test_suite() {
+  timed "release build" build release
+  unlock
+  timed "release tests" run_ctest release -L '^(numeric|loop|real_time|setup)$'
+  lock
+  timed "sanitizer build" build asan unit_tests
+  unlock
+  timed "sanitizer tests" run_ctest asan -L '^unit$'
+}
+
+# Runs a step and notes how long it took.
+timed() { # name, command...
+  local name=$1 start=$SECONDS
+  shift
+  "$@"
+  times+="$name $((SECONDS - start)) s, "
 }
 
 # Runs a test preset and adds its counts. A run that ends badly without a failed test (none found) counts as one failed.
