@@ -130,7 +130,7 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robo
   folder.Write("trajectory_online.tum", ToTum(online));
   if (truth != nullptr) folder.Write("trajectory_truth.tum", ToTum(true_path));
   folder.Write("map.ply", ply);
-  const GridMap grid = ToGridMap(slam.occupancy());
+  const GridMap grid = ToGridMap(slam.BuildOccupancy());
   folder.Write("map.pgm", ToPgm(grid));
   folder.Write("map.yaml", ToMapYaml(grid, "map.pgm"));
   folder.Write("map.png", ToPng(picture));

@@ -23,7 +23,7 @@ struct RunOptions {
   RobotKind robot = RobotKind::kTwin;
   std::filesystem::path hardware_file{};       // of kHardware
   sim::Gl gl = sim::Gl::kAuto;                 // kOff: depth only
-  int threads = 2;
+  int threads = 0;                             // TwinOptions::threads; 0: the twin chooses
   double pace = 0.0;                           // simulated over wall time not to be exceeded; 0: as fast as it goes
   std::function<void(Time now, double distance_m, const std::string& doing)> progress;  // a few times a second
   Hand hand{};                                 // of an operator who drives; empty: the pilot does

@@ -19,7 +19,7 @@ constexpr double kLate_m = 1.0;        // what was seen on the last metre looks 
 }  // namespace
 
 Slam::Slam(const SlamConfig& config, const Footprint& footprint)
-    : config_(config), footprint_(footprint), local_(config.local), occupancy_(config.occupancy), closer_(config.loop) {}
+    : config_(config), footprint_(footprint), local_(config.local), grid_(config.occupancy), closer_(config.loop) {}
 
 PosePrior Slam::Predict(const Observation& observation) const {
   const Pose motion = T_odom_last_.inverse() * observation.T_odom_base;
@@ -82,6 +82,7 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
     local_.ForgetBefore(path_m_ - config_.local_length_m);
     pruned_at_m_ = path_m_;
   }
+  grid_.Follow(keyframes_);
   T_map_last_ = T_map_base;
   Record(observation.stamp, T_map_base);
   return T_map_base;
@@ -122,7 +123,6 @@ void Slam::Keep(const Observation& observation, const Pose& T_map_base) {
   else if (!moved) Watch(observation, T_map_base, keyframes_.back());
   if (!moved || former != nullptr) return;
   local_.Insert(observation.points_base, T_map_base, path_m_);
-  occupancy_.Insert(observation.points_base, observation.camera_base, T_map_base);
   Keyframe keyframe{.stamp = observation.stamp,
                     .T_map_base = T_map_base,
                     .T_previous_base = since,
@@ -136,6 +136,7 @@ void Slam::Keep(const Observation& observation, const Pose& T_map_base) {
   if (map_turn_rad_ && std::isfinite(observation.yaw_sigma_rad))
     keyframe.yaw_rad = WrapPi(observation.yaw_rad + *map_turn_rad_);
   keyframes_.push_back(std::move(keyframe));
+  grid_.Add(keyframes_.back());
   sighted_at_ = observation.stamp;
 }
 
@@ -201,19 +202,21 @@ void Slam::SearchLoop(const Observation& observation, Pose& T_map_base) {
   Correct(*corrected);
 }
 
-// Takes over the corrected poses, and makes the maps anew.
+// Takes over the corrected poses, and makes the local map anew, for the next frame is registered against it; the grid has
+// time.
 void Slam::Correct(const std::vector<Pose>& corrected) {
   for (std::size_t i = 0; i < corrected.size(); ++i) keyframes_[i].T_map_base = corrected[i];
-  local_ = VoxelMap(config_.local);
-  occupancy_ = OccupancyGrid(config_.occupancy);
+  grid_.Renew();
+  std::vector<PlacedPoints> near;
   for (Keyframe& keyframe : keyframes_) {
-    occupancy_.Insert(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
     if (path_m_ - keyframe.path_m >= config_.local_length_m &&
         (ViewCentre(keyframe.T_map_base) - ViewCentre(corrected.back())).norm() > kRecall_m)
       continue;
-    local_.Insert(keyframe.points_base, keyframe.T_map_base, path_m_);
+    near.push_back({keyframe.points_base, keyframe.T_map_base});
     keyframe.in_local_map_m = path_m_;
   }
+  local_ = VoxelMap(config_.local);
+  local_.InsertAll(near, path_m_);
 }
 
 std::vector<MapPose> Slam::trajectory() const {
@@ -227,7 +230,9 @@ VoxelMap Slam::BuildMap() const {
   VoxelMapConfig config = config_.local;
   config.voxel_m = config_.map_voxel_m;
   VoxelMap map(config);
-  for (const Keyframe& keyframe : keyframes_) map.Insert(keyframe.points_base, keyframe.T_map_base, 0.0);
+  std::vector<PlacedPoints> frames;
+  for (const Keyframe& keyframe : keyframes_) frames.push_back({keyframe.points_base, keyframe.T_map_base});
+  map.InsertAll(frames, 0.0);
   map.Forget(MovedAway(map.voxels(), keyframes_, footprint_));
   for (const Keyframe& keyframe : keyframes_) map.Paint(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
   return map;

@@ -9,7 +9,7 @@
 #include "robot/types/footprint.h"
 #include "slam/keyframe.h"
 #include "slam/loop/loop_closer.h"
-#include "slam/map/occupancy_grid.h"
+#include "slam/map/keyframe_grid.h"
 #include "slam/map/voxel_map.h"
 #include "slam/register/icp.h"
 
@@ -89,7 +89,9 @@ class Slam {
   // Registration takes back (or adds) this share of the way that the wheels report, of late.
   bool slipping() const { return std::abs(slip_) > config_.slip_min; }
   const VoxelMap& local_map() const { return local_; }
-  const OccupancyGrid& occupancy() const { return occupancy_; }
+  // After a closed loop it still shows the key frames where they were believed before, for KeyframeGrid::kFrames frames at
+  // most; poses, key frames and the local map are corrected at once.
+  const OccupancyGrid& occupancy() const { return grid_.grid(); }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const std::vector<MapPose>& online() const { return online_; }  // one pose a frame, as the car drove by it
   std::vector<MapPose> trajectory() const;                        // the same frames, as the closed loops correct them
@@ -99,6 +101,8 @@ class Slam {
   // The whole map, from all key frames, coloured: without what moved away. Of its voxels those with at least map_points_min
   // points are meant to be used.
   VoxelMap BuildMap() const;
+  // The whole grid, from all key frames as the closed loops correct them.
+  OccupancyGrid BuildOccupancy() const { return GridOf(keyframes_, config_.occupancy); }
 
  private:
   PosePrior Predict(const Observation& observation) const;
@@ -123,7 +127,7 @@ class Slam {
   SlamConfig config_;
   Footprint footprint_;
   VoxelMap local_;
-  OccupancyGrid occupancy_;
+  KeyframeGrid grid_;
   LoopCloser closer_;
   std::vector<Keyframe> keyframes_;
   std::vector<MapPose> online_;

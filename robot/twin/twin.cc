@@ -199,14 +199,19 @@ sim::WorldOptions WorldOf(const TwinOptions& options) {
   return world;
 }
 
+// How many there are of, for 0. On one core too: there they take as long as one.
+int ThreadsOf(const TwinOptions& options) {
+  return options.threads > 0 ? options.threads : options.color ? 3 : 2;
+}
+
 }  // namespace
 
 struct Twin::Impl final : public Clock {
   explicit Impl(const TwinOptions& options)
-      : end(options.end), world(WorldOf(options)), depth_worker(options.threads > 1), color_worker(options.threads > 2),
+      : end(options.end), world(WorldOf(options)), depth_worker(ThreadsOf(options) > 1), color_worker(ThreadsOf(options) > 2),
         depth(options, world, depth_worker), drive(world, options.drive_rate_hz) {
     // With two threads the cameras share one beside the caller's.
-    if (options.color) color.emplace(options, world, options.threads > 2 ? color_worker : depth_worker);
+    if (options.color) color.emplace(options, world, ThreadsOf(options) > 2 ? color_worker : depth_worker);
     if (options.compass) compass.emplace(options);
     if (world.pan() != nullptr)
       pan.emplace(world, options.drive_rate_hz, [this](double angle_rad) { world.pan()->Send(angle_rad); },

@@ -46,7 +46,9 @@ struct TwinOptions {
   std::optional<Compass> compass;
   double drive_rate_hz = 50.0;
   Time end{0};      // WaitUntil returns false from here on
-  int threads = 2;  // 1: everything on the caller's; more: cameras beside it
+  // 1: everything on the caller's thread; 2: the cameras share one beside it; from 3 on each has its own. 0: as many as
+  // there are cameras, beside the caller's. The same bits for any number.
+  int threads = 0;
 };
 
 // Which bodies are the car's: what its own cameras do not see.

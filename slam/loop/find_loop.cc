@@ -37,11 +37,12 @@ std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const 
 
 // One map of them all, and a second, coarser one.
 void AddTo(VoxelMap& fine, VoxelMap& coarse, std::span<const Keyframe> keyframes, const std::vector<std::size_t>& indices) {
-  for (const std::size_t i : indices) {
-    const std::vector<Point> points = Downsample(keyframes[i].points_base, kThin_m);
-    fine.Insert(points, keyframes[i].T_map_base, 0.0);
-    coarse.Insert(points, keyframes[i].T_map_base, 0.0);
-  }
+  std::vector<std::vector<Point>> thin;
+  for (const std::size_t i : indices) thin.push_back(Downsample(keyframes[i].points_base, kThin_m));
+  std::vector<PlacedPoints> views;
+  for (std::size_t k = 0; k < indices.size(); ++k) views.push_back({thin[k], keyframes[indices[k]].T_map_base});
+  fine.InsertAll(views, 0.0);
+  coarse.InsertAll(views, 0.0);
 }
 
 double ShareMeeting(const VoxelMap& map, std::span<const Point> points_base, const Pose& T_map_base) {

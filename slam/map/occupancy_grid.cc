@@ -56,13 +56,14 @@ void OccupancyGrid::Insert(std::span<const Point> points_base, const Eigen::Vect
   const Eigen::Vector3d camera_map = T_map_base * camera_base.cast<double>();
   const Eigen::Vector2i from = cell_of(camera_map);
   GrowTo(from.x(), from.y());
+  const double steepest = std::tan(config_.sweep_rad);
   for (const Point& point : points_base) {
     const Eigen::Vector3d p_map = T_map_base * point.position.cast<double>();
     if (!((p_map - camera_map).norm() < kFarthest_m)) continue;  // not finite either
     const Eigen::Vector3d ray = p_map - camera_map;
     const Eigen::Vector2i to = cell_of(p_map);
     GrowTo(to.x(), to.y());
-    if (std::abs(ray.z()) <= std::tan(config_.sweep_rad) * ray.head<2>().norm()) FreeAlong(from.x(), from.y(), to.x(), to.y());
+    if (std::abs(ray.z()) <= steepest * ray.head<2>().norm()) FreeAlong(from.x(), from.y(), to.x(), to.y());
     if (p_map.z() >= config_.height_min_m && p_map.z() <= config_.height_max_m) Add(to.x(), to.y(), kHit);
   }
 }

@@ -12,6 +12,8 @@ namespace {
 constexpr double kNearest_m = 0.5;   // views from nearer count as from there: one that errs should not decide alone
 constexpr double kGrazing = 0.01;    // cosine; so that whatever was seen has a colour
 
+double WeightOf(const Point& point) { return 1e-4 / std::max<double>(point.sigma_m * point.sigma_m, 1e-6); }
+
 template <class Function>
 void ForNeighbours(const std::array<std::int32_t, 3>& cell, Function function) {
   for (int dx = -1; dx <= 1; ++dx)
@@ -30,14 +32,14 @@ Eigen::Vector3d VoxelMap::Centre(const Cell& cell) const {
   return (Eigen::Vector3d(cell[0], cell[1], cell[2]).array() + 0.5) * config_.voxel_m;
 }
 
-Voxel& VoxelMap::FindOrAdd(const Cell& cell) {
-  if (const std::int32_t index = Find(cell); index >= 0) return voxels_[index];
+std::int32_t VoxelMap::FindOrAdd(const Cell& cell) {
+  if (const std::int32_t index = Find(cell); index >= 0) return index;
   voxels_.emplace_back().cell = cell;
   if (2 * voxels_.size() > slots_.size())
     MakeTable();
   else
     Enter(static_cast<std::int32_t>(voxels_.size()) - 1);
-  return voxels_.back();
+  return static_cast<std::int32_t>(voxels_.size()) - 1;
 }
 
 void VoxelMap::Enter(std::int32_t index) {
@@ -52,26 +54,50 @@ void VoxelMap::MakeTable() {
 }
 
 void VoxelMap::Insert(std::span<const Point> points_base, const Pose& T_map_base, double path_m) {
-  std::vector<Cell> touched;
-  touched.reserve(points_base.size());
-  for (const Point& point : points_base) {
-    const Eigen::Vector3d p_map = T_map_base * point.position.cast<double>();
-    const double weight = 1e-4 / std::max<double>(point.sigma_m * point.sigma_m, 1e-6);
-    if (!InReach(p_map.cast<float>()) || !(weight > 0.0)) continue;  // an infinite sigma weighs nothing
-    const Cell cell = CellOf(p_map);
-    Voxel& voxel = FindOrAdd(cell);
-    const Eigen::Vector3d d = p_map - Centre(cell);
-    ++voxel.count;
-    voxel.weight += weight;
-    voxel.sum += weight * d;
-    voxel.squares += weight * d * d.transpose();
-    voxel.last_seen_m = path_m;
-    voxel.mean = (Centre(cell) + voxel.sum / voxel.weight).cast<float>();
-    touched.push_back(cell);
+  const PlacedPoints frame{points_base, T_map_base};
+  InsertAll(std::span(&frame, 1), path_m);
+}
+
+void VoxelMap::InsertAll(std::span<const PlacedPoints> frames, double path_m) {
+  // The voxel of every point; -1: left out. New voxels are still empty, which their neighbours' surfaces do not notice.
+  std::vector<std::int32_t> voxel_of;
+  for (const PlacedPoints& frame : frames)
+    for (const Point& point : frame.points_base) {
+      const Eigen::Vector3d p_map = frame.T_map_base * point.position.cast<double>();
+      const bool counts = InReach(p_map.cast<float>()) && WeightOf(point) > 0.0;  // an infinite sigma weighs nothing
+      voxel_of.push_back(counts ? FindOrAdd(CellOf(p_map)) : -1);
+    }
+  constexpr std::int32_t kDone = -1;
+  std::vector<std::int32_t> last_frame(voxels_.size(), kDone);  // that has points in the voxel
+  std::size_t i = 0;
+  for (std::size_t f = 0; f < frames.size(); ++f)
+    for (std::size_t end = i + frames[f].points_base.size(); i < end; ++i)
+      if (voxel_of[i] >= 0) last_frame[voxel_of[i]] = static_cast<std::int32_t>(f);
+
+  i = 0;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const std::size_t begin = i;
+    for (const Point& point : frames[f].points_base) {
+      const std::int32_t index = voxel_of[i++];
+      if (index < 0) continue;
+      Voxel& voxel = voxels_[index];
+      const double weight = WeightOf(point);
+      const Eigen::Vector3d d = frames[f].T_map_base * point.position.cast<double>() - Centre(voxel.cell);
+      ++voxel.count;
+      voxel.weight += weight;
+      voxel.sum += weight * d;
+      voxel.squares += weight * d * d.transpose();
+    }
+    for (std::size_t k = begin; k < i; ++k) {
+      const std::int32_t index = voxel_of[k];
+      if (index < 0 || last_frame[index] != static_cast<std::int32_t>(f)) continue;
+      last_frame[index] = kDone;
+      Voxel& voxel = voxels_[index];
+      voxel.last_seen_m = path_m;
+      voxel.mean = (Centre(voxel.cell) + voxel.sum / voxel.weight).cast<float>();
+      UpdateSurface(voxel);
+    }
   }
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  for (const Cell& cell : touched) UpdateSurface(voxels_[Find(cell)]);
 }
 
 void VoxelMap::UpdateSurface(Voxel& voxel) const {

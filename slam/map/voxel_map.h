@@ -43,12 +43,21 @@ struct Voxel {
   Eigen::Vector3d bgr() const { return bgr_sum / color_weight; }  // [0, 255]; of a voxel with colour
 };
 
+// What one frame saw, and from where.
+struct PlacedPoints {
+  std::span<const Point> points_base;
+  Pose T_map_base = Pose::Identity();
+};
+
 class VoxelMap {
  public:
   explicit VoxelMap(const VoxelMapConfig& config) : config_(config) {}
 
   // path_m: length driven so far, remembered as the voxels' last_seen_m.
   void Insert(std::span<const Point> points_base, const Pose& T_map_base, double path_m);
+  // As one Insert after the other, with the same bits, but a voxel's surface is computed only once: after the last frame
+  // that has points in it.
+  void InsertAll(std::span<const PlacedPoints> frames, double path_m);
   // Colours from the points that have one, for the voxels there are: the best views decide. One weighs (cos(incidence) /
   // distance^2)^2, which is the square of how many pixels there are to an area, so that few frames from near and in front
   // outweigh many from far and aslant. A voxel that is no plane counts as facing. camera_base: where the rays begin.
@@ -104,7 +113,7 @@ class VoxelMap {
     for (std::size_t slot = HashOf(cell) & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1))
       if (slots_[slot].index < 0 || Same(slots_[slot].cell, cell)) return slots_[slot].index;
   }
-  Voxel& FindOrAdd(const Cell& cell);
+  std::int32_t FindOrAdd(const Cell& cell);
   void MakeTable();
   void Enter(std::int32_t index);
   void UpdateSurface(Voxel& voxel) const;

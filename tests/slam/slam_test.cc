@@ -146,6 +146,36 @@ TEST(Slam, GivesNoPoseForOdometryThatIsNotFinite) {
   EXPECT_FALSE(slam.Update(observation));
 }
 
+// Twice round a circle in the room: the second time it knows the place, and the key frames move.
+TEST(Slam, CorrectsPosesAndLocalMapAtOnceAndTheGridWithinFortyFrames) {
+  constexpr double kRadius_m = 0.5, kStep_m = 0.05;
+  SlamConfig config;
+  config.loop.apart_m = 2.0;
+  config.correction_min_m = 0.0;
+  Slam slam(config);
+  constexpr int kLookEvery = 4;  // frames
+  int renewed = 0, behind = 0;   // frames since the grid last was that of the key frames
+  for (int i = 0; i < 140; ++i) {
+    const double turned_rad = i * kStep_m / kRadius_m;
+    const Pose T_world_base =
+        FromXyYaw(kRadius_m * std::sin(turned_rad), -kRadius_m * std::cos(turned_rad), WrapPi(turned_rad));
+    Observation observation = InRoom(T_world_base, 0.05 * i);
+    int count = 0;
+    std::erase_if(observation.points_base, [&count](const Point&) { return ++count % 5 != 0; });
+    ASSERT_TRUE(slam.Update(observation));
+    if (i % kLookEvery != 0) continue;
+    const OccupancyGrid now = slam.BuildOccupancy(), &shown = slam.occupancy();
+    bool same = now.width() == shown.width() && now.height() == shown.height() && now.origin_m() == shown.origin_m();
+    for (int row = 0; same && row < now.height(); ++row)
+      for (int column = 0; same && column < now.width(); ++column) same = now.At(column, row) == shown.At(column, row);
+    if (same && behind > 0) ++renewed;
+    behind = same ? 0 : behind + kLookEvery;
+    ASSERT_LE(behind, static_cast<int>(KeyframeGrid::kFrames)) << i;
+  }
+  EXPECT_GE(slam.loops(), 1);
+  EXPECT_GE(renewed, 1) << "no correction moved anything: the test means nothing";
+}
+
 TEST(Slam, SaysThatItIsLostAndDrivesOnByOdometry) {
   Slam slam({});
   ASSERT_TRUE(slam.Update(InRoom(Pose::Identity(), 0.0)));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <random>
 
@@ -143,6 +144,72 @@ TEST(VoxelMap, LeavesOutPointsThatAreNotFinite) {
     EXPECT_EQ(map.Nearest(points[0].position), nullptr);
     EXPECT_TRUE(Downsample(points, 0.1).empty());
   }
+}
+
+// Bit by bit: what a map of key frames is must not depend on how it was made.
+TEST(VoxelMap, InsertsManyFramesAsOneAfterTheOther) {
+  for (const int count : {0, 1, 2, 12}) {
+    VoxelMap one_by_one({.voxel_m = 0.1, .flatness_max = 1.0, .plane_points_min = 3});
+    one_by_one.Insert(Scatter(500, 0.5, 99), FromXyYaw(0.1, 0.0, 0.2), 1.0);  // what was there before
+    VoxelMap together = one_by_one;
+    std::vector<std::vector<Point>> points;
+    std::vector<PlacedPoints> frames;
+    for (int i = 0; i < count; ++i) {
+      points.push_back(Scatter(i == 1 ? 0 : 400, 0.5, static_cast<std::uint32_t>(i)));
+      for (std::size_t k = 0; k < points.back().size(); k += 50) {
+        points.back()[k].position.x() = k % 100 == 0 ? std::nanf("") : 1e30f;
+        points.back()[k + 1].sigma_m = k % 100 == 0 ? HUGE_VALF : std::nanf("");
+        points.back()[k + 2].position = points.back()[k + 3].position;
+      }
+    }
+    for (int i = 0; i < count; ++i) frames.push_back({points[i], FromXyYaw(0.2 * i, -0.1 * i, 0.3 * i)});
+    for (const PlacedPoints& frame : frames) one_by_one.Insert(frame.points_base, frame.T_map_base, 2.0);
+    together.InsertAll(frames, 2.0);
+    ASSERT_EQ(together.voxels().size(), one_by_one.voxels().size());
+    for (std::size_t i = 0; i < together.voxels().size(); ++i) {
+      const Voxel &a = together.voxels()[i], &b = one_by_one.voxels()[i];
+      EXPECT_EQ(a.cell, b.cell);
+      EXPECT_EQ(a.count, b.count);
+      EXPECT_EQ(a.weight, b.weight);
+      EXPECT_EQ(a.sum, b.sum);
+      EXPECT_EQ(a.squares, b.squares);
+      EXPECT_EQ(a.mean, b.mean);
+      EXPECT_EQ(a.normal, b.normal);
+      EXPECT_EQ(a.last_seen_m, b.last_seen_m);
+    }
+  }
+}
+
+// The surface by the definition: the least eigenvector of all points in the 27 voxels.
+TEST(VoxelMap, GivesEveryVoxelTheSurfaceOfItsNeighbourhood) {
+  const VoxelMapConfig config{.voxel_m = 0.2, .flatness_max = 1.0, .plane_points_min = 3};
+  const std::vector<Point> first = Scatter(300, 0.5, 5), second = Scatter(300, 0.5, 6);
+  const std::vector<PlacedPoints> frames{{first, Pose::Identity()}, {second, Pose::Identity()}};
+  VoxelMap map(config);
+  map.InsertAll(frames, 0.0);
+  int compared = 0;
+  for (const Voxel& voxel : map.voxels()) {
+    const Eigen::Vector3i home(voxel.cell[0], voxel.cell[1], voxel.cell[2]);
+    std::vector<Eigen::Vector3d> near;
+    bool later = false;  // a voxel only the first frame met knows nothing of the second
+    for (const auto* points : {&first, &second})
+      for (const Point& point : *points) {
+        const Eigen::Vector3i cell = (point.position.cast<double>() / config.voxel_m).array().floor().cast<int>();
+        later = later || (points == &second && cell == home);
+        if ((cell - home).cwiseAbs().maxCoeff() <= 1) near.push_back(point.position.cast<double>());
+      }
+    if (!later || near.size() < 3) continue;
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& p : near) mean += p / static_cast<double>(near.size());
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const Eigen::Vector3d& p : near) covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(near.size());
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+    const Eigen::Vector3d values = solver.eigenvalues();
+    if (values(0) > 0.9 * values(1)) continue;  // either direction would do
+    EXPECT_NEAR(std::abs(voxel.normal.cast<double>().dot(solver.eigenvectors().col(0))), 1.0, 1e-3);
+    ++compared;
+  }
+  EXPECT_GT(compared, 50);
 }
 
 TEST(Downsample, KeepsOneMeanPointAVoxel) {

@@ -31,7 +31,7 @@ struct Arguments {
   std::string scenario = "corridor_loop", out, robot = "twin", gl = "auto", joystick, seed;
   std::string duration_s = "3600";  // the scenario's reader checks it
   double speed_m_s = HandLimits{}.speed_m_s;
-  int threads = 2, radio_baud = 0;
+  int threads = 0, radio_baud = 0;
   std::vector<std::string> sets;
   bool keyboard = false, autonomy = false;
 };
@@ -181,7 +181,7 @@ void AddDrive(CLI::App& app, int& exit_code) {
   drive->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-drive");
   drive->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")
       ->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
-  drive->add_option("--threads", arguments->threads, "default 2")->check(CLI::Range(1, 256));
+  drive->add_option("--threads", arguments->threads, "same bits for any number; default one for each camera, and one")->check(CLI::Range(1, 256));
   drive->add_option("--set", arguments->sets, "a.b=c, over the scenario's file; may be repeated")
       ->allow_extra_args(false);
   drive->callback([arguments, &exit_code] { exit_code = Drive(*arguments); });

@@ -1,4 +1,5 @@
-// How fast the stack finds the pose: registration alone, and a whole frame from filter to pose.
+// How fast the stack finds the pose: registration alone, a whole frame from filter to pose, and the frames of a lap that
+// closes a loop.
 #pragma once
 
 #include <atomic>
@@ -11,12 +12,13 @@ struct SlamBench {
   struct Row {
     std::string what;
     int points = 0;  // median
-    double median_ms = 0.0, p99_ms = 0.0;
-    double median_limit_ms = 0.0, p99_limit_ms = 0.0;  // 0: none
+    double median_ms = 0.0, p99_ms = 0.0, max_ms = 0.0;
+    double median_limit_ms = 0.0, p99_limit_ms = 0.0, max_limit_ms = 0.0;  // 0: none
   };
   int rounds = 200;            // of each registration
   int frames = 0;              // of the drive
   double not_converged = 0.0;  // share of its frames
+  int loops = 0;               // closed on the lap
   std::vector<Row> rows{};
 };
 
