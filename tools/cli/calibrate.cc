@@ -1,7 +1,6 @@
 // `merlin calibrate odometry`: wheel radius, wheelbase and steering offset from drives that were measured with a tape.
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -11,6 +10,8 @@
 #include "robot/description/description.h"
 #include "robot/types/error.h"
 #include "scenarios/calibration.h"
+#include "scenarios/judge/output_path.h"
+#include "scenarios/judge/writers.h"
 #include "scenarios/names.h"
 #include "scenarios/scenario.h"
 #include "tools/cli/commands.h"
@@ -36,11 +37,6 @@ OdometryCalibration Solve(const CarDescription& car, const MeasuredDrives& drive
   return found;
 }
 
-void Write(const std::string& file, const std::string& text) {
-  std::ofstream out(file);
-  if (!(out << text << std::flush)) throw MachineError(file + ": cannot be written");
-}
-
 void Print(const CarDescription& car, const OdometryCalibration& found, const CarDescription* true_car) {
   const auto row = [&](const char* name, const char* unit, double scale, double described, double value, double sigma,
                        double truth) {
@@ -58,7 +54,7 @@ void Print(const CarDescription& car, const OdometryCalibration& found, const Ca
 
 void Finish(const Arguments& arguments, const CarDescription& car, const OdometryCalibration& found,
             const CarDescription* true_car) {
-  Write(arguments.out, ToYaml(found.value));
+  WriteFile(arguments.out, ToYaml(found.value));
   if (arguments.json) {
     fmt::print("{{\"wheel_radius_m\": {:.7g}, \"wheelbase_m\": {:.7g}, \"steering_offset_rad\": {:.7g}, "
                "\"residual_rms\": {:.3g}, \"file\": \"{}\"}}\n",
@@ -132,6 +128,7 @@ int Calibrate(const Arguments& arguments) {
     throw InputError("calibrate odometry", "what is it to calibrate from?", "one of a file of drives, --robot twin or --study",
                      sources == 0 ? "none" : "several");
   if (arguments.study) return Study(arguments);
+  CheckOutputFile(arguments.out);
   if (!arguments.robot.empty()) return CalibrateTwin(arguments);
   const CarDescription car = ReadCar(CarFile(ReadScenario(arguments.scenario, arguments.sets).car.model));
   Finish(arguments, car, Solve(car, ReadDrives(arguments.drives), arguments.drives), nullptr);
@@ -149,10 +146,13 @@ void AddCalibrate(CLI::App& app, int& exit_code) {
                        "YAML: straights: [{encoder_counts, distance_m}], circles: [{steering_rad, diameter_m}]");
   odometry->add_option("--robot", a->robot, "twin: lets it drive and measures it, tape errors included")
       ->check(CLI::IsMember({"twin"}));
-  odometry->add_flag("--study", a->study, "circles and squares of the twin on every floor, before and after");
+  CLI::Option* study =
+      odometry->add_flag("--study", a->study, "circles and squares of the twin on every floor, before and after");
   odometry->add_option("--scenario", a->scenario, "whose car and seed; default corridor_short");
   odometry->add_option("--set", a->sets, "a.b=c, over the scenario's file; may be repeated")->allow_extra_args(false);
-  odometry->add_option("--out", a->out, "default calibration.yaml; a scenario takes it as car.calibration");
+  odometry->add_option("--out", a->out, "default calibration.yaml; a scenario takes it as car.calibration")
+      ->check(NotEmpty)
+      ->excludes(study);
   odometry->add_flag("--json", a->json, "for machines");
   odometry->callback([a, &exit_code] { exit_code = Calibrate(*a); });
 }

@@ -211,7 +211,7 @@ void AddCamera(CLI::App& app, int& exit_code) {
   camera->add_flag("--nearest", a->nearest, "take the nearest valid settings instead of refusing");
   camera->add_option("--seed", a->seed, "of the noise; default 1")->check(WholeNumber);
   camera->add_option("--threads", a->threads, "same bits for any number; default 2")->check(CLI::Range(1, 256));
-  camera->add_option("--out", a->out, "folder for the files; default runs/camera-<model>");
+  camera->add_option("--out", a->out, "folder for the files; default runs/camera-<model>")->check(NotEmpty);
   camera->add_option(
       "--study", a->study,
       "instead, a figure: noise, wiggling, integration, flying, multipath, scatter, sun, glass or motion");

@@ -18,6 +18,7 @@
 #include "tools/drive/stick.h"
 #if MERLIN_TWIN
 #include "robot/description/description.h"
+#include "scenarios/judge/output_folder.h"
 #include "scenarios/names.h"
 #include "scenarios/run.h"
 #include "tools/cli/run_options.h"
@@ -115,6 +116,7 @@ RunOptions OptionsOf(const Arguments& arguments) {
                                       : std::filesystem::path(arguments.out);
   options.gl = GlOf(arguments.gl);
   options.threads = arguments.threads;
+  OutputFolder::Check(options.out);
   return options;
 }
 
@@ -178,7 +180,8 @@ void AddDrive(CLI::App& app, int& exit_code) {
   drive->add_option("--speed", arguments->speed_m_s, "m/s at full stick; default 0.8")->check(TopSpeed);
   drive->add_option("--duration", arguments->duration_s, "seconds after which it ends; default 3600");
   drive->add_option("--seed", arguments->seed, "of all randomness; default the scenario's")->check(WholeNumber);
-  drive->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-drive");
+  drive->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-drive")
+      ->check(NotEmpty);
   drive->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")
       ->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
   drive->add_option("--threads", arguments->threads, "default 2")->check(CLI::Range(1, 256));

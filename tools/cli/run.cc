@@ -12,6 +12,7 @@
 #include "scenarios/scenario.h"
 #include "tools/cli/commands.h"
 #if MERLIN_TWIN
+#include "scenarios/judge/output_folder.h"
 #include "scenarios/run.h"
 #include "tools/cli/run_options.h"
 #endif
@@ -141,6 +142,7 @@ int Run(const Arguments& arguments) {
   options.gl = GlOf(arguments.gl);
   options.threads = arguments.threads;
   options.pace = PaceOf(arguments.pace);
+  OutputFolder::Check(options.out);
   RunReport report;
   {
     Progress progress(options.scenario.duration_s);
@@ -161,12 +163,6 @@ int Run(const Arguments& arguments) {
 }
 
 #endif
-
-}  // namespace
-
-namespace {
-
-std::string NotEmpty(const std::string& text) { return text.empty() ? "expected a value, got nothing" : ""; }
 
 }  // namespace
 
