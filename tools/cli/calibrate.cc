@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "scenarios/names.h"
 #include "scenarios/scenario.h"
 #include "tools/cli/commands.h"
+#include "tools/json_text.h"
 #if MERLIN_TWIN
 #include "sim/true_car.h"
 #include "tools/calibrate/test_drive.h"
@@ -56,10 +58,11 @@ void Finish(const Arguments& arguments, const CarDescription& car, const Odometr
             const CarDescription* true_car) {
   WriteFile(arguments.out, ToYaml(found.value));
   if (arguments.json) {
-    fmt::print("{{\"wheel_radius_m\": {:.7g}, \"wheelbase_m\": {:.7g}, \"steering_offset_rad\": {:.7g}, "
-               "\"residual_rms\": {:.3g}, \"file\": \"{}\"}}\n",
-               found.value.wheel_radius_m, found.value.wheelbase_m, found.value.steering_offset_rad, found.residual_rms,
-               arguments.out);
+    fmt::print("{}", JsonText({{"wheel_radius_m", found.value.wheel_radius_m},
+                               {"wheelbase_m", found.value.wheelbase_m},
+                               {"steering_offset_rad", found.value.steering_offset_rad},
+                               {"residual_rms", found.residual_rms},
+                               {"file", arguments.out}}));
     return;
   }
   Print(car, found, true_car);
@@ -87,6 +90,7 @@ int Study(const Arguments& arguments) {
   constexpr double kLimit_percent = 1.0;
   const sim::Materials materials = sim::ReadMaterials(Home() / "models/materials.yaml");
   bool pass = true;
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::string rows;
   for (const auto& [surface, material] : materials.by_name) {
     if (!surface.starts_with("floor_")) continue;
@@ -98,16 +102,16 @@ int Study(const Arguments& arguments) {
     for (const Manoeuvre& m : DriveManoeuvres(twin, calibration)) {
       const double before = 100.0 * m.error_before_m / m.path_m, after = 100.0 * m.error_after_m / m.path_m;
       pass = pass && after <= kLimit_percent;
-      if (arguments.json)
-        rows += fmt::format("{}  {{\"surface\": \"{}\", \"manoeuvre\": \"{}\", \"path_m\": {:.3f}, \"before_percent\": "
-                            "{:.3f}, \"after_percent\": {:.3f}}}",
-                            rows.empty() ? "" : ",\n", surface, m.name, m.path_m, before, after);
-      else
-        rows += fmt::format("  {:<16} {:<20} {:>7.2f} m {:>9.2f} % {:>9.2f} %\n", surface, m.name, m.path_m, before, after);
+      json.push_back({{"surface", surface},
+                      {"manoeuvre", m.name},
+                      {"path_m", m.path_m},
+                      {"before_percent", before},
+                      {"after_percent", after}});
+      rows += fmt::format("  {:<16} {:<20} {:>7.2f} m {:>9.2f} % {:>9.2f} %\n", surface, m.name, m.path_m, before, after);
     }
   }
   if (arguments.json)
-    fmt::print("[\n{}\n]\n", rows);
+    fmt::print("{}", JsonText(json));
   else
     fmt::print("odometry's error of position at the end of a manoeuvre, in percent of its path; limit {:g} % after\n"
                "  {:<16} {:<20} {:>9} {:>11} {:>11}\n{}",

@@ -18,6 +18,7 @@
 #include "tools/camera/picture.h"
 #include "tools/camera/report.h"
 #include "tools/camera/study.h"
+#include "tools/json_text.h"
 #endif
 
 namespace merlin::cli {
@@ -152,9 +153,10 @@ int DrawStudy(const Arguments& arguments, const Shooting& shooting) {
       Study(name, {shooting.sheet, shooting.errors, shooting.settings, shooting.seed, shooting.threads});
   folder.Write("study_" + name + ".png", ToPng(figure));
   folder.Write("study_" + name + ".csv", ToCsv(figure));
-  const std::string json = fmt::format(
-      "{{\"model\": \"{}\", \"study\": \"{}\", \"figure\": \"study_{}.png\", \"numbers\": \"study_{}.csv\"}}\n",
-      shooting.sheet.name, name, name, name);
+  const std::string json = JsonText({{"model", shooting.sheet.name},
+                                     {"study", name},
+                                     {"figure", "study_" + name + ".png"},
+                                     {"numbers", "study_" + name + ".csv"}});
   folder.Finish(json);
   if (arguments.json)
     fmt::print("{}", json);

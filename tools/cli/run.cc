@@ -150,8 +150,12 @@ int Run(const Arguments& arguments) {
       options.progress = [&progress](Time now, double distance_m, const std::string& doing) { progress.Show(now, distance_m, doing); };
     report = RunScenario(options, interrupted);
   }
-  if (arguments.json) fmt::print("{}", ToJson(report.result));
-  else PrintSummary(report, options.out);
+  if (arguments.json) {
+    if (!report.note.empty()) fmt::print(stderr, "merlin: {}\n", report.note);
+    fmt::print("{}", ToJson(report.result));
+  } else {
+    PrintSummary(report, options.out);
+  }
   return report.result.verdict == Verdict::kPass ? kPass : report.result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
 }
 
