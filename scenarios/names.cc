@@ -52,7 +52,7 @@ std::vector<std::string> CameraNamesOf(bool depth) {
 
 fs::path Home() {
   const char* home = std::getenv("MERLIN_HOME");
-  return home != nullptr ? fs::path(home) : fs::path(MERLIN_SOURCE_DIR);
+  return home != nullptr && *home != 0 ? fs::path(home) : fs::path(MERLIN_SOURCE_DIR);
 }
 
 fs::path ScenarioFile(const std::string& name) {
