@@ -169,7 +169,7 @@ int DrawStudy(const Arguments& arguments, const Shooting& shooting) {
 int Camera(const Arguments& arguments) {
   RefuseMixtures(arguments);
   if (!arguments.study.empty()) CheckStudyName(arguments.study);
-  const std::filesystem::path file = CameraFile(arguments.model);
+  const std::filesystem::path file = DepthCameraFile(arguments.model);
   Shooting shooting{
       .sheet = ReadDepthCameraSheet(file), .errors = ReadDepthCameraErrors(file), .settings = {}, .effects = {}};
   const std::string effects = arguments.effects.value_or("all");
@@ -184,7 +184,7 @@ int Camera(const Arguments& arguments) {
 #else
 
 int Camera(const Arguments& arguments) {
-  (void)CameraFile(arguments.model);
+  (void)DepthCameraFile(arguments.model);
   throw MachineError("this build has no twin (MERLIN_TWIN=OFF)");
 }
 
