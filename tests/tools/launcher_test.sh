@@ -161,6 +161,51 @@ case_MujocoRootIsChecked() {
   grep -qxF "MUJOCO_ROOT:PATH=$MUJOCO_ROOT" "$top/build/release/CMakeCache.txt" || fail "CMake was not told"
 }
 
+# A terminal of so many columns, wide (0: it does not tell) and COLUMNS; what a person sees of the progress goes to out.
+on_a_terminal() { # columns, COLUMNS
+  COLUMNS=$2 python3 - "$top" "$1" >"$world/out" <<'PYTHON'
+import fcntl, os, pty, struct, sys, termios
+top, columns = sys.argv[1], int(sys.argv[2])
+child, terminal = pty.fork()
+if child == 0:
+    sys.stdin.readline()  # until the terminal has its size
+    os.execvp("bash", ["bash", "-c", """
+        set -euo pipefail
+        say() { echo "merlin: $*" >&2; }
+        . "$0/tools/setup/build.sh"
+        printf '[1/20] Building a\\nwarning\\n[20/20] Linking b\\n' | show_progress "building release (log: build/release/build.log)"
+        """, top])
+fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+termios.tcgetattr(terminal)
+os.write(terminal, b"\n")
+seen = b""
+try:
+    while part := os.read(terminal, 4096):
+        seen += part
+except OSError:
+    pass
+for line in seen.decode().replace("\n", "\r").split("\r"):
+    print(line.replace("\x1b[K", ""))
+PYTHON
+}
+
+case_ProgressFitsTheTerminal() {
+  for size in "30 200" "0 30"; do
+    # shellcheck disable=SC2086
+    on_a_terminal $size
+    [ "$(wc -L <"$world/out")" = 29 ] || fail "the line does not fit 30 columns"
+    says "[1/20]" && says "[20/20]"
+  done
+  on_a_terminal 200 30 && says "[20/20] building release (log: build/release/build.log)"
+  (
+    say() { echo "merlin: $*" >&2; }
+    # shellcheck source=/dev/null
+    . "$top/tools/setup/build.sh"
+    printf '[1/2] a\n[2/2] b\n' | show_progress "building release (log: a long name of a file that is not cut)"
+  ) 2>"$world/out"
+  [ "$(cat "$world/out")" = "merlin: building release (log: a long name of a file that is not cut)" ] || fail "not one plain line"
+}
+
 case_SourcesThatDoNotBuildGiveFour() {
   all_packages_there
   builds_nothing
