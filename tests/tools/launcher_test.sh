@@ -68,9 +68,10 @@ case_HelpWorksBeforeAnySetUp() {
   no_packages_there
   merlin 0 --help && says "usage: tools/merlin"
   [ "$(wc -l <"$world/out")" -le 24 ] || fail "the help does not fit a screen"
-  [ "$(wc -L <"$world/out")" -le 120 ] || fail "a line of the help is too long"
+  [ "$(wc -L <"$world/out")" -le 80 ] || fail "a line of the help is too long"
   merlin 2 && says "usage: tools/merlin"
-  merlin 2 rum && says "no 'rum'"
+  merlin 2 rum && says "no 'rum'" && says "did you mean 'run'?"
+  merlin 2 '.*' && says "no '.*'"
   merlin 2 test nonsense && says "-R NAME"
   nothing_half_done
 }
@@ -161,7 +162,7 @@ case_MujocoRootIsChecked() {
   grep -qxF "MUJOCO_ROOT:PATH=$MUJOCO_ROOT" "$top/build/release/CMakeCache.txt" || fail "CMake was not told"
 }
 
-# A terminal of so many columns, wide (0: it does not tell) and COLUMNS; what a person sees of the progress goes to out.
+# The build's progress on a terminal of so many columns (0: it does not tell); what stood on its lines goes to out.
 on_a_terminal() { # columns, COLUMNS
   COLUMNS=$2 python3 - "$top" "$1" >"$world/out" <<'PYTHON'
 import fcntl, os, pty, struct, sys, termios
@@ -176,7 +177,6 @@ if child == 0:
         printf '[1/20] Building a\\nwarning\\n[20/20] Linking b\\n' | show_progress "building release (log: build/release/build.log)"
         """, top])
 fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-termios.tcgetattr(terminal)
 os.write(terminal, b"\n")
 seen = b""
 try:
