@@ -26,7 +26,16 @@ std::size_t NearestIndex(const std::vector<Eigen::Vector2d>& path, const Eigen::
 
 }  // namespace
 
-std::vector<std::string> BehaviorNames() { return {"follow_corridor", "turn_on_stand"}; }
+std::vector<BehaviorInfo> Behaviors() {
+  return {{"follow_corridor", "The car drives in the middle of a corridor and around its corners, for so many laps."},
+          {"turn_on_stand", "The car stands on a turntable that turns it through an angle."}};
+}
+
+std::vector<std::string> BehaviorNames() {
+  std::vector<std::string> names;
+  for (const BehaviorInfo& behavior : Behaviors()) names.push_back(behavior.name);
+  return names;
+}
 
 Pilot::Pilot(const CarDescription& car, const Task& task, const PilotConfig& config)
     : car_(car), task_(task), config_(config), avoid_(FootprintOf(car), config.avoid) {}

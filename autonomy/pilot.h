@@ -64,7 +64,11 @@ void Visit(Visitor& v, Task& c) {
 
 inline bool IsOnStand(const Task& task) { return task.behavior == "turn_on_stand"; }
 
-// The names a task's behavior may have.
+// What a task's behavior may be: the name, and one sentence of what the car does.
+struct BehaviorInfo {
+  std::string name, description;
+};
+std::vector<BehaviorInfo> Behaviors();
 std::vector<std::string> BehaviorNames();
 
 struct Decision {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 
+#include "robot/description/description.h"
 #include "robot/types/error.h"
 #include "robot/types/nearest_name.h"
 
@@ -34,25 +34,32 @@ fs::path Resolve(const std::string& what, const std::string& name, const fs::pat
 
 fs::path CameraPath(const std::string& name) { return Home() / "models/cameras" / (name + ".yaml"); }
 
-// Only the sheet of a time-of-flight camera has modulation frequencies.
-bool IsDepthCamera(const fs::path& sheet) {
-  std::ifstream in(sheet);
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("frequencies_mhz:")) return true;
-  return false;
+std::vector<std::string> CameraNamesOf(CameraKind kind) {
+  std::vector<std::string> names = CameraNames();
+  std::erase_if(names, [=](const std::string& name) { return KindOfCamera(CameraPath(name)) != kind; });
+  return names;
 }
 
-std::vector<std::string> CameraNamesOf(bool depth) {
-  std::vector<std::string> names = CameraNames();
-  std::erase_if(names, [=](const std::string& name) { return IsDepthCamera(CameraPath(name)) != depth; });
-  return names;
+const char* Words(CameraKind kind) {
+  return kind == CameraKind::kDepth ? "a time-of-flight camera" : kind == CameraKind::kColor ? "a colour camera" : "no camera";
+}
+
+// What is wrong with a sheet of its own kind, its reader says.
+fs::path CameraOfKind(CameraKind kind, const std::string& name) {
+  const std::vector<std::string> known = CameraNamesOf(kind);
+  const fs::path file =
+      Resolve(kind == CameraKind::kDepth ? "depth camera" : "colour camera", name, CameraPath(name), ".yaml", known);
+  const CameraKind found = KindOfCamera(file);
+  if (found == kind || found == CameraKind::kUnknown) return file;
+  throw InputError(name, std::string("this is ") + Words(found),
+                   Words(kind) + (known.empty() ? "" : ", such as " + NearestName(name, known)));
 }
 
 }  // namespace
 
 fs::path Home() {
   const char* home = std::getenv("MERLIN_HOME");
-  return home != nullptr ? fs::path(home) : fs::path(MERLIN_SOURCE_DIR);
+  return home != nullptr && *home != 0 ? fs::path(home) : fs::path(MERLIN_SOURCE_DIR);
 }
 
 fs::path ScenarioFile(const std::string& name) {
@@ -64,12 +71,8 @@ fs::path RoomFile(const std::string& name) {
 fs::path CameraFile(const std::string& name) {
   return Resolve("camera", name, CameraPath(name), ".yaml", CameraNames());
 }
-fs::path DepthCameraFile(const std::string& name) {
-  return Resolve("depth camera", name, CameraPath(name), ".yaml", CameraNamesOf(true));
-}
-fs::path ColorCameraFile(const std::string& name) {
-  return Resolve("colour camera", name, CameraPath(name), ".yaml", CameraNamesOf(false));
-}
+fs::path DepthCameraFile(const std::string& name) { return CameraOfKind(CameraKind::kDepth, name); }
+fs::path ColorCameraFile(const std::string& name) { return CameraOfKind(CameraKind::kColor, name); }
 fs::path CarFile(const std::string& name) {
   return Resolve("car", name, Home() / "models" / name / (name + ".urdf"), ".urdf", {"merlin"});
 }

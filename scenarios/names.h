@@ -14,7 +14,7 @@ std::filesystem::path Home();
 std::filesystem::path ScenarioFile(const std::string& name_or_path);  // scenarios/<name>.yaml
 std::filesystem::path RoomFile(const std::string& name_or_path);      // models/rooms/<name>.xml
 std::filesystem::path CameraFile(const std::string& name_or_path);    // models/cameras/<name>.yaml
-std::filesystem::path DepthCameraFile(const std::string& name_or_path);  // the same, but names the nearest of its kind
+std::filesystem::path DepthCameraFile(const std::string& name_or_path);  // the same; refuses another kind
 std::filesystem::path ColorCameraFile(const std::string& name_or_path);
 std::filesystem::path CarFile(const std::string& name_or_path);       // models/<name>/<name>.urdf
 

@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <numbers>
 #include <set>
+#include <span>
+#include <string_view>
 
 #include "robot/description/description.h"
 #include "robot/types/config.h"
@@ -142,6 +144,15 @@ class SheetReader {
   std::set<std::string> wrong_;  // keys whose value is no number in its range
 };
 
+// What only one kind of camera has tells which it is.
+constexpr std::string_view kDepthKeys[] = {"fov_horizontal_deg",  "fov_vertical_deg",   "signal_e_m2_per_us",
+                                           "contrast_at_20mhz",   "contrast_corner_mhz", "low_signal_amplitude_e",
+                                           "integration_min_us",  "integration_max_us", "frequencies_mhz"};
+constexpr std::string_view kColorKeys[] = {"fx_px", "fy_px", "cx_px", "cy_px", "falloff_power",
+                                           "exposure_nominal_ms", "exposure_min_ms", "exposure_max_ms", "gain_max"};
+constexpr std::string_view kSharedKeys[] = {"width_px",   "height_px",   "rate_max_hz",
+                                            "latency_ms", "full_well_e", "read_noise_e"};
+
 double TanHalf(double angle_deg) { return std::tan(0.5 * angle_deg * std::numbers::pi / 180.0); }
 
 struct DepthCameraFile {
@@ -192,6 +203,22 @@ DepthCameraFile ReadDepthCamera(const std::filesystem::path& yaml) {
 }
 
 }  // namespace
+
+CameraKind KindOfCamera(const std::filesystem::path& yaml) {
+  YAML::Node root;
+  try {
+    root = YAML::LoadFile(yaml.string());
+  } catch (const YAML::Exception&) {
+    return CameraKind::kUnknown;
+  }
+  if (!root.IsMap() || root.size() == 0) return CameraKind::kUnknown;
+  const auto count = [&root](std::span<const std::string_view> keys) {
+    return std::ranges::count_if(keys, [&](std::string_view key) { return root[std::string(key)].IsDefined(); });
+  };
+  const std::ptrdiff_t depth = count(kDepthKeys), color = count(kColorKeys);
+  if (depth != color) return depth > color ? CameraKind::kDepth : CameraKind::kColor;
+  return depth + count(kSharedKeys) > 0 ? CameraKind::kUnknown : CameraKind::kNone;
+}
 
 DepthCameraSheet ReadDepthCameraSheet(const std::filesystem::path& yaml) { return ReadDepthCamera(yaml).sheet; }
 

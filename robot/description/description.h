@@ -17,6 +17,10 @@ namespace merlin {
 // "package://<name>/x" and relative paths against the URDF's own folder.
 CarDescription ReadCar(const std::filesystem::path& urdf);
 
+// What a file describes, by its keys: none for a map without one key of a camera, unknown where they do not tell.
+enum class CameraKind { kUnknown, kNone, kDepth, kColor };
+CameraKind KindOfCamera(const std::filesystem::path& yaml);
+
 // Throw InputError: unknown key (names the nearest), missing key, value out of range, values that contradict each
 // other; all faults at once, of the sheet and of its errors alike. Errors: the map under the key `errors`, the defaults
 // for what it omits.

@@ -83,10 +83,14 @@ std::vector<DeviceReport> CheckDevices(const HardwareConfig& config, const Hardw
   RealClock clock(config.clock, Time::max());
   std::vector<DeviceReport> reports;
   const auto check = [&](const char* device, const std::function<std::string()>& use) {
+    using enum DeviceReport::Fault;
     try {
-      reports.push_back({device, use()});
+      const std::string complaint = use();
+      reports.push_back({device, complaint, complaint.empty() ? kNone : kSilent});
+    } catch (const InputError& error) {
+      reports.push_back({device, std::string(device) + ": " + error.what(), kBadConfig});
     } catch (const std::exception& error) {
-      reports.push_back({device, std::string(device) + ": " + error.what()});
+      reports.push_back({device, std::string(device) + ": " + error.what(), kNotOpened});
     }
   };
   check("drive", [&] {

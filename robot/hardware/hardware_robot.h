@@ -64,6 +64,9 @@ class HardwareRobot {
 struct DeviceReport {
   std::string device;     // "drive", "compass", "depth camera", "colour camera"
   std::string complaint;  // one sentence; empty: it works
+  enum class Fault { kNone, kSilent, kNotOpened, kBadConfig } fault = Fault::kNone;  // bad: its config, not the device
+
+  bool works() const { return fault == Fault::kNone; }
 };
 // For `merlin doctor`: every device by itself, so that each is told, not the first alone. Moves nothing.
 std::vector<DeviceReport> CheckDevices(const HardwareConfig& config, const HardwareCameras& cameras, Duration listen);

@@ -6,12 +6,14 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "robot/types/error.h"
+#include "scenarios/judge/output_path.h"
 #include "scenarios/judge/writers.h"
 
 namespace merlin {
@@ -19,26 +21,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kExpected = "an empty folder, a new one, or one that a run of merlin left";
+constexpr char kExpected[] = "an empty folder, a new one, or one that a run of merlin left";
 
-[[noreturn]] void Refuse(const fs::path& path, const std::string& what, int error) {
-  const std::string reason = fmt::format("{}: {}: {}", path.string(), what, std::strerror(error));
-  if (error == ENOSPC || error == EDQUOT || error == EIO) throw MachineError(reason);
-  throw InputError("--out " + reason);
-}
-
-[[noreturn]] void RefuseAs(const fs::path& path, const std::string& got) {
-  throw InputError("--out " + path.string(), "cannot be used", std::string(kExpected), got);
-}
-
-void MakeFolder(const fs::path& path) {
+// Whether there is such a folder. Refuses what is something else.
+bool IsThere(const fs::path& path) {
+  if (path.empty()) throw InputError("--out", "is empty", "a folder's path");
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status)) return;
-  if (fs::exists(status)) RefuseAs(path, "something that is not a folder");
-  if (fs::is_symlink(fs::symlink_status(path, error))) RefuseAs(path, "a link that leads nowhere");
-  fs::create_directories(path, error);
-  if (error) Refuse(path, "cannot be made", error.value());
+  if (fs::is_directory(status)) return true;
+  if (fs::is_symlink(fs::symlink_status(path, error)) && !fs::exists(status))
+    RefuseOutput(path, kExpected, "a link that leads nowhere");
+  if (fs::status_known(status) && fs::exists(status)) RefuseOutput(path, kExpected, "something that is not a folder");
+  return false;
+}
+
+// The folder itself, or the nearest of its parents that is there.
+fs::path NearestThatIsThere(const fs::path& path) {
+  fs::path nearest = fs::absolute(path);
+  std::error_code error;
+  for (; !fs::exists(fs::status(nearest, error)) && nearest != nearest.root_path(); nearest = nearest.parent_path()) {
+    if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
+      RefuseOutput(path, "cannot be made", error.value());
+  }
+  return nearest;
+}
+
+// Only an attempt tells: file systems may be read-only, and in /proc even root makes nothing.
+void TryToWriteIn(const fs::path& folder, const fs::path& path) {
+  std::string attempt = (folder / ".merlin-XXXXXX").string();
+  if (::mkdtemp(attempt.data()) == nullptr)
+    RefuseOutput(path, folder == fs::absolute(path) ? "cannot be written" : "cannot be made", errno);
+  ::rmdir(attempt.c_str());
 }
 
 // Whether a run of ours left it. Refuses a folder of anyone else's.
@@ -46,18 +59,18 @@ bool IsOurs(const fs::path& path) {
   std::error_code error;
   if (fs::is_regular_file(fs::symlink_status(path / OutputFolder::kMarker, error))) return true;
   const bool is_empty = fs::is_empty(path, error);
-  if (error) Refuse(path, "cannot be read", error.value());
-  if (!is_empty) RefuseAs(path, "a folder with other files in it");
+  if (error) RefuseOutput(path, "cannot be read", error.value());
+  if (!is_empty) RefuseOutput(path, kExpected, "a folder with other files in it");
   return false;
 }
 
 int OpenMarker(const fs::path& path) {
   const int marker = ::open((path / OutputFolder::kMarker).c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-  if (marker < 0) Refuse(path, "cannot be written", errno);
+  if (marker < 0) RefuseOutput(path, "cannot be written", errno);
   if (::flock(marker, LOCK_EX | LOCK_NB) != 0 &&
       errno == EWOULDBLOCK) {  // a file system without locks is taken as it is
     ::close(marker);
-    RefuseAs(path, "a folder in which another run is at work");
+    RefuseOutput(path, kExpected, "a folder in which another run is at work");
   }
   return marker;
 }
@@ -76,21 +89,27 @@ void Empty(const fs::path& path) {
   fs::remove(path / "result.json", error);  // first: what is half removed is no finished run
   std::vector<fs::path> entries;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) entries.push_back(entry.path());
-  if (error) Refuse(path, "cannot be read", error.value());
+  if (error) RefuseOutput(path, "cannot be read", error.value());
   for (const fs::path& entry : entries) {
     if (entry.filename() == OutputFolder::kMarker) continue;
     fs::remove_all(entry, error);
-    if (error) Refuse(entry, "cannot be removed", error.value());
+    if (error) RefuseOutput(entry, "cannot be removed", error.value());
   }
 }
 
 }  // namespace
 
+void OutputFolder::Check(const fs::path& path) {
+  if (IsThere(path) && IsOurs(path)) ::close(OpenMarker(path));
+  TryToWriteIn(NearestThatIsThere(path), path);
+}
+
 OutputFolder::OutputFolder(const fs::path& path) : path_(path) {
-  if (path.empty()) throw InputError("--out", "is empty", "a folder's path");
-  MakeFolder(path);
+  Check(path);
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) RefuseOutput(path, "cannot be made", error.value());
   const bool ours = IsOurs(path);
-  if (::access(path.c_str(), W_OK | X_OK) != 0) Refuse(path, "cannot be written", errno);
   marker_ = OpenMarker(path);
   try {
     Mark(path, marker_, false);

@@ -13,6 +13,9 @@ class OutputFolder {
  public:
   static constexpr std::string_view kMarker = ".merlin-run";
 
+  // Throws as the constructor does, and changes nothing: to be asked before the work whose results it is to hold.
+  static void Check(const std::filesystem::path& path);
+
   // Takes the folder: one that does not exist is made, parents too; an empty one is used; one with a marker of ours (a
   // regular file of that name) is emptied whole, result.json first; a link to a folder counts as the folder. Throws
   // InputError, with nothing changed, for any other that is not empty, for what is no folder, for one that cannot be

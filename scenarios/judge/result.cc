@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "robot/types/utf8.h"
+
 namespace merlin {
 namespace {
 
@@ -22,21 +24,34 @@ Json ToJsonValue(const StackTimes& times) {
 }
 Json ToJsonValue(const std::optional<std::string>& hash) { return hash ? Json(*hash) : Json(); }
 
-// Text as XML may hold it: markup escaped, control characters and bytes outside ASCII replaced.
+// One character as the value of an XML 1.0 attribute may hold it (section 2.2, Char): markup and white space escaped,
+// for a parser makes blanks of bare line ends; what it may not hold, control characters and noncharacters, as '?'.
+std::string XmlCharacter(char32_t code, std::string_view bytes) {
+  switch (code) {
+    case '&':
+      return "&amp;";
+    case '<':
+      return "&lt;";
+    case '>':
+      return "&gt;";
+    case '"':
+      return "&quot;";
+    case '\t':
+    case '\n':
+    case '\r':
+      return fmt::format("&#{};", static_cast<int>(code));
+    default:
+      return code < 0x20 || code == 0xFFFE || code == 0xFFFF ? "?" : std::string(bytes);
+  }
+}
+
+// Bytes that are no UTF-8 become U+FFFD, as in result.json.
 std::string Xml(std::string_view text) {
   std::string escaped;
-  for (const char c : text) {
-    if (c == '&') {
-      escaped += "&amp;";
-    } else if (c == '<') {
-      escaped += "&lt;";
-    } else if (c == '>') {
-      escaped += "&gt;";
-    } else if (c == '"') {
-      escaped += "&quot;";
-    } else {
-      escaped += c >= 32 && c < 127 ? c : '?';
-    }
+  while (!text.empty()) {
+    const Utf8Character first = FirstCharacter(text);
+    escaped += first.valid ? XmlCharacter(first.code, text.substr(0, first.bytes)) : "\uFFFD";
+    text.remove_prefix(first.bytes);
   }
   return escaped;
 }

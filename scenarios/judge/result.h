@@ -32,7 +32,7 @@ struct RunResult {
 std::string ToJson(const RunResult& result);
 
 // The text of junit.xml: one test case a check, and one named "run", in error where the run was
-// interrupted or ended by a fault.
+// interrupted or ended by a fault. UTF-8 stays as it is; what XML may not hold is replaced, so that it is well formed.
 std::string ToJUnit(const RunResult& result);
 
 }  // namespace merlin

@@ -64,6 +64,22 @@ TEST(CameraCli, RefusesBadInputWithOneSentenceAndNoFile) {
   refused("pmd_3k_s --study noise --effects all", "--effects");
 }
 
+TEST(CameraCli, SaysWhatASheetIsThatIsNoTimeOfFlightCamera) {
+  const TemporaryFolder folder;
+  const std::string expected = "expected a time-of-flight camera, such as ";
+  ExpectRefused("ccd --wall 2", "ccd: this is a colour camera; " + expected, folder.path());
+  ExpectRefused("ccd --study noise", "ccd: this is a colour camera", folder.path());
+  std::ofstream(folder.path() / "webcam.yaml") << "name: webcam\nwidth_px: 640\nheight_px: 480\nfx_px: 500\nfy_px: 500\n";
+  ExpectRefused("webcam.yaml --wall 2", "webcam.yaml: this is a colour camera; " + expected, folder.path());
+  std::ofstream(folder.path() / "drive.yaml") << "name: drive\nroom: hall\nduration_s: 5\n";
+  ExpectRefused("drive.yaml --wall 2", "drive.yaml: this is no camera; " + expected, folder.path());
+  // A sheet of the right kind keeps being read key by key.
+  std::ofstream(folder.path() / "half.yaml") << "name: half\nwidth_px: 64\nfrequencies_mhz: [20]\n";
+  const Outcome outcome = Merlin("camera half.yaml --wall 2", folder.path());
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.said.find("missing key 'height_px'"), std::string::npos) << outcome.said;
+}
+
 TEST(CameraCli, RefusesPosesAndRoomsThatShowNothing) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& arguments, const std::string& part) {

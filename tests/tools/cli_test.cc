@@ -25,10 +25,13 @@ void ExpectRefused(const std::string& arguments, const std::string& part, const 
 TEST(Cli, HelpFitsAScreen) {
   const TemporaryFolder folder;
   for (const char* arguments :
-       {"--help", "run --help", "drive --help", "list --help", "calibrate odometry --help", "doctor --help", "register --help"}) {
+       {"--help", "run --help", "drive --help", "list --help", "calibrate odometry --help", "doctor --help", "register --help",
+        "camera --help", "bench --help", "optimize --help", "eval --help"}) {
     const Outcome outcome = Merlin(arguments, folder.path());
     EXPECT_EQ(outcome.code, 0) << arguments;
     EXPECT_LE(std::ranges::count(outcome.said, '\n'), 40) << arguments;
+    for (std::size_t begin = 0, end; (end = outcome.said.find('\n', begin)) != std::string::npos; begin = end + 1)
+      EXPECT_LE(end - begin, 80u) << arguments << "\n" << outcome.said.substr(begin, end - begin);
   }
 }
 
@@ -83,6 +86,40 @@ TEST(Cli, RefusesBadScenariosRoomsAndCamerasWithExitTwo) {
   ExpectRefused("run corridor_short --set car.model=meshed.urdf", "body.stl: not a mesh", folder.path());
   std::ofstream(folder.path() / "broken.yaml") << "room: hall\nsensors: {depth: {camera: pmd_3k_s}\n";
   ExpectRefused("run broken.yaml", "broken.yaml:", folder.path());
+}
+
+TEST(Cli, SaysWhatACameraIsThatIsOfTheOtherKind) {
+  const TemporaryFolder folder;
+  for (const char* scenario : {"run corridor_short", "run corridor_short --robot emulated"}) {
+    const std::string command = scenario + std::string(" --set sensors.");
+    ExpectRefused(command + "depth.camera=ccd", "ccd: this is a colour camera; expected a time-of-flight camera", folder.path());
+    ExpectRefused(command + "color.camera=pmd_a2", "pmd_a2: this is a time-of-flight camera; expected a colour camera, such as ccd",
+                  folder.path());
+  }
+}
+
+TEST(Cli, NamesTheNearestOfWhatItDoesNotKnow) {
+  const TemporaryFolder folder;
+  ExpectRefused("rum corridor_short", "unknown subcommand 'rum'; did you mean 'run'?", folder.path());
+  ExpectRefused("calibrate odometri", "unknown subcommand 'odometri'; did you mean 'odometry'?", folder.path());
+  ExpectRefused("run corridor_short --sed 3", "unknown option '--sed'; did you mean '--seed'?", folder.path());
+  ExpectRefused("run --sed=3", "unknown option '--sed'; did you mean '--seed'?", folder.path());
+  ExpectRefused("list --jason", "unknown option '--jason'", folder.path());
+  ExpectRefused("doctor --licences", "did you mean '--licenses'?", folder.path());
+}
+
+TEST(Cli, KeepsTheUmlautsOfAScenario) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(std::filesystem::path(MERLIN_SOURCE_DIR) / "scenarios/corridor_short.yaml", folder.path() / "Prüfung Flur.yaml");
+  const Outcome outcome = Merlin("run 'Prüfung Flur.yaml' --gl off --duration 1 --set checks={}", folder.path());
+  EXPECT_EQ(outcome.code, 0) << outcome.said;
+  const std::filesystem::path out = folder.path() / "runs/Prüfung Flur-1";
+  EXPECT_NE(Contents(out / "junit.xml").find("classname=\"Prüfung Flur\""), std::string::npos);
+  EXPECT_NE(Contents(out / "result.json").find("\"scenario\": \"Prüfung Flur\""), std::string::npos);
+  std::filesystem::copy(folder.path() / "Prüfung Flur.yaml", folder.path() / "\xff.yaml");
+  EXPECT_EQ(Merlin("run \xff.yaml --gl off --duration 1 --set checks={} --out o", folder.path()).code, 0);
+  EXPECT_NE(Contents(folder.path() / "o/junit.xml").find("classname=\"\uFFFD\""), std::string::npos);
+  EXPECT_NE(Contents(folder.path() / "o/result.json").find("\"scenario\": \"\uFFFD\""), std::string::npos);
 }
 
 TEST(Cli, KeepsWhatIsNotARunOfOurs) {

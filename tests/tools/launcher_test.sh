@@ -68,9 +68,10 @@ case_HelpWorksBeforeAnySetUp() {
   no_packages_there
   merlin 0 --help && says "usage: tools/merlin"
   [ "$(wc -l <"$world/out")" -le 24 ] || fail "the help does not fit a screen"
-  [ "$(wc -L <"$world/out")" -le 120 ] || fail "a line of the help is too long"
+  [ "$(wc -L <"$world/out")" -le 80 ] || fail "a line of the help is too long"
   merlin 2 && says "usage: tools/merlin"
-  merlin 2 rum && says "no 'rum'"
+  merlin 2 rum && says "no 'rum'" && says "did you mean 'run'?"
+  merlin 2 '.*' && says "no '.*'"
   merlin 2 test nonsense && says "-R NAME"
   nothing_half_done
 }
@@ -159,6 +160,50 @@ case_MujocoRootIsChecked() {
   mkdir -p "$MUJOCO_ROOT/include/mujoco" && touch "$MUJOCO_ROOT/include/mujoco/mujoco.h" "$MUJOCO_ROOT/libmujoco.so.4.0.0"
   merlin 7 doctor && says "program got: doctor"
   grep -qxF "MUJOCO_ROOT:PATH=$MUJOCO_ROOT" "$top/build/release/CMakeCache.txt" || fail "CMake was not told"
+}
+
+# The build's progress on a terminal of so many columns (0: it does not tell); what stood on its lines goes to out.
+on_a_terminal() { # columns, COLUMNS
+  COLUMNS=$2 python3 - "$top" "$1" >"$world/out" <<'PYTHON'
+import fcntl, os, pty, struct, sys, termios
+top, columns = sys.argv[1], int(sys.argv[2])
+child, terminal = pty.fork()
+if child == 0:
+    sys.stdin.readline()  # until the terminal has its size
+    os.execvp("bash", ["bash", "-c", """
+        set -euo pipefail
+        say() { echo "merlin: $*" >&2; }
+        . "$0/tools/setup/build.sh"
+        printf '[1/20] Building a\\nwarning\\n[20/20] Linking b\\n' | show_progress "building release (log: build/release/build.log)"
+        """, top])
+fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+os.write(terminal, b"\n")
+seen = b""
+try:
+    while part := os.read(terminal, 4096):
+        seen += part
+except OSError:
+    pass
+for line in seen.decode().replace("\n", "\r").split("\r"):
+    print(line.replace("\x1b[K", ""))
+PYTHON
+}
+
+case_ProgressFitsTheTerminal() {
+  for size in "30 200" "0 30"; do
+    # shellcheck disable=SC2086
+    on_a_terminal $size
+    [ "$(wc -L <"$world/out")" = 29 ] || fail "the line does not fit 30 columns"
+    says "[1/20]" && says "[20/20]"
+  done
+  on_a_terminal 200 30 && says "[20/20] building release (log: build/release/build.log)"
+  (
+    say() { echo "merlin: $*" >&2; }
+    # shellcheck source=/dev/null
+    . "$top/tools/setup/build.sh"
+    printf '[1/2] a\n[2/2] b\n' | show_progress "building release (log: a long name of a file that is not cut)"
+  ) 2>"$world/out"
+  [ "$(cat "$world/out")" = "merlin: building release (log: a long name of a file that is not cut)" ] || fail "not one plain line"
 }
 
 case_SourcesThatDoNotBuildGiveFour() {

@@ -13,6 +13,7 @@
 #include "sim/color_camera.h"
 #include "tools/camera/measure.h"
 #include "tools/camera/stage.h"
+#include "tools/json_text.h"
 
 namespace merlin {
 namespace {
@@ -189,7 +190,7 @@ std::string ToJson(const CameraBench& bench) {
     json["no_color"] = bench.no_color;
   json["rays_per_s"] = bench.rays_per_s;
   json["multi_ray_per_s"] = bench.multi_ray_per_s;
-  return json.dump(2) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace merlin

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/json_text.h"
+
 namespace merlin {
 namespace {
 
@@ -43,7 +45,7 @@ std::string ToJson(const Measurement& m, const Shooting& shooting, const std::st
                   {"saturated_share", m.saturated_share},
                   {"amplitude_mean", m.amplitude_mean},
                   {"frame_ms", m.frame_ms}};
-  return json.dump(2) + "\n";
+  return JsonText(json);
 }
 
 std::string SettingsLine(const Shooting& shooting, const std::string& effects) {

@@ -1,8 +1,8 @@
 // `merlin calibrate odometry`: wheel radius, wheelbase and steering offset from drives that were measured with a tape.
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -11,9 +11,12 @@
 #include "robot/description/description.h"
 #include "robot/types/error.h"
 #include "scenarios/calibration.h"
+#include "scenarios/judge/output_path.h"
+#include "scenarios/judge/writers.h"
 #include "scenarios/names.h"
 #include "scenarios/scenario.h"
 #include "tools/cli/commands.h"
+#include "tools/json_text.h"
 #if MERLIN_TWIN
 #include "sim/true_car.h"
 #include "tools/calibrate/test_drive.h"
@@ -36,11 +39,6 @@ OdometryCalibration Solve(const CarDescription& car, const MeasuredDrives& drive
   return found;
 }
 
-void Write(const std::string& file, const std::string& text) {
-  std::ofstream out(file);
-  if (!(out << text << std::flush)) throw MachineError(file + ": cannot be written");
-}
-
 void Print(const CarDescription& car, const OdometryCalibration& found, const CarDescription* true_car) {
   const auto row = [&](const char* name, const char* unit, double scale, double described, double value, double sigma,
                        double truth) {
@@ -58,12 +56,13 @@ void Print(const CarDescription& car, const OdometryCalibration& found, const Ca
 
 void Finish(const Arguments& arguments, const CarDescription& car, const OdometryCalibration& found,
             const CarDescription* true_car) {
-  Write(arguments.out, ToYaml(found.value));
+  WriteFile(arguments.out, ToYaml(found.value));
   if (arguments.json) {
-    fmt::print("{{\"wheel_radius_m\": {:.7g}, \"wheelbase_m\": {:.7g}, \"steering_offset_rad\": {:.7g}, "
-               "\"residual_rms\": {:.3g}, \"file\": \"{}\"}}\n",
-               found.value.wheel_radius_m, found.value.wheelbase_m, found.value.steering_offset_rad, found.residual_rms,
-               arguments.out);
+    fmt::print("{}", JsonText({{"wheel_radius_m", found.value.wheel_radius_m},
+                               {"wheelbase_m", found.value.wheelbase_m},
+                               {"steering_offset_rad", found.value.steering_offset_rad},
+                               {"residual_rms", found.residual_rms},
+                               {"file", arguments.out}}));
     return;
   }
   Print(car, found, true_car);
@@ -91,6 +90,7 @@ int Study(const Arguments& arguments) {
   constexpr double kLimit_percent = 1.0;
   const sim::Materials materials = sim::ReadMaterials(Home() / "models/materials.yaml");
   bool pass = true;
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::string rows;
   for (const auto& [surface, material] : materials.by_name) {
     if (!surface.starts_with("floor_")) continue;
@@ -102,16 +102,16 @@ int Study(const Arguments& arguments) {
     for (const Manoeuvre& m : DriveManoeuvres(twin, calibration)) {
       const double before = 100.0 * m.error_before_m / m.path_m, after = 100.0 * m.error_after_m / m.path_m;
       pass = pass && after <= kLimit_percent;
-      if (arguments.json)
-        rows += fmt::format("{}  {{\"surface\": \"{}\", \"manoeuvre\": \"{}\", \"path_m\": {:.3f}, \"before_percent\": "
-                            "{:.3f}, \"after_percent\": {:.3f}}}",
-                            rows.empty() ? "" : ",\n", surface, m.name, m.path_m, before, after);
-      else
-        rows += fmt::format("  {:<16} {:<20} {:>7.2f} m {:>9.2f} % {:>9.2f} %\n", surface, m.name, m.path_m, before, after);
+      json.push_back({{"surface", surface},
+                      {"manoeuvre", m.name},
+                      {"path_m", m.path_m},
+                      {"before_percent", before},
+                      {"after_percent", after}});
+      rows += fmt::format("  {:<16} {:<20} {:>7.2f} m {:>9.2f} % {:>9.2f} %\n", surface, m.name, m.path_m, before, after);
     }
   }
   if (arguments.json)
-    fmt::print("[\n{}\n]\n", rows);
+    fmt::print("{}", JsonText(json));
   else
     fmt::print("odometry's error of position at the end of a manoeuvre, in percent of its path; limit {:g} % after\n"
                "  {:<16} {:<20} {:>9} {:>11} {:>11}\n{}",
@@ -132,6 +132,7 @@ int Calibrate(const Arguments& arguments) {
     throw InputError("calibrate odometry", "what is it to calibrate from?", "one of a file of drives, --robot twin or --study",
                      sources == 0 ? "none" : "several");
   if (arguments.study) return Study(arguments);
+  CheckOutputFile(arguments.out);
   if (!arguments.robot.empty()) return CalibrateTwin(arguments);
   const CarDescription car = ReadCar(CarFile(ReadScenario(arguments.scenario, arguments.sets).car.model));
   Finish(arguments, car, Solve(car, ReadDrives(arguments.drives), arguments.drives), nullptr);
@@ -149,10 +150,13 @@ void AddCalibrate(CLI::App& app, int& exit_code) {
                        "YAML: straights: [{encoder_counts, distance_m}], circles: [{steering_rad, diameter_m}]");
   odometry->add_option("--robot", a->robot, "twin: lets it drive and measures it, tape errors included")
       ->check(CLI::IsMember({"twin"}));
-  odometry->add_flag("--study", a->study, "circles and squares of the twin on every floor, before and after");
+  CLI::Option* study =
+      odometry->add_flag("--study", a->study, "circles and squares of the twin on every floor, before and after");
   odometry->add_option("--scenario", a->scenario, "whose car and seed; default corridor_short");
   odometry->add_option("--set", a->sets, "a.b=c, over the scenario's file; may be repeated")->allow_extra_args(false);
-  odometry->add_option("--out", a->out, "default calibration.yaml; a scenario takes it as car.calibration");
+  odometry->add_option("--out", a->out, "default calibration.yaml; a scenario takes it as car.calibration")
+      ->check(NotEmpty)
+      ->excludes(study);
   odometry->add_flag("--json", a->json, "for machines");
   odometry->callback([a, &exit_code] { exit_code = Calibrate(*a); });
 }

@@ -18,6 +18,7 @@
 #include "tools/camera/picture.h"
 #include "tools/camera/report.h"
 #include "tools/camera/study.h"
+#include "tools/json_text.h"
 #endif
 
 namespace merlin::cli {
@@ -152,9 +153,10 @@ int DrawStudy(const Arguments& arguments, const Shooting& shooting) {
       Study(name, {shooting.sheet, shooting.errors, shooting.settings, shooting.seed, shooting.threads});
   folder.Write("study_" + name + ".png", ToPng(figure));
   folder.Write("study_" + name + ".csv", ToCsv(figure));
-  const std::string json = fmt::format(
-      "{{\"model\": \"{}\", \"study\": \"{}\", \"figure\": \"study_{}.png\", \"numbers\": \"study_{}.csv\"}}\n",
-      shooting.sheet.name, name, name, name);
+  const std::string json = JsonText({{"model", shooting.sheet.name},
+                                     {"study", name},
+                                     {"figure", "study_" + name + ".png"},
+                                     {"numbers", "study_" + name + ".csv"}});
   folder.Finish(json);
   if (arguments.json)
     fmt::print("{}", json);
@@ -167,7 +169,7 @@ int DrawStudy(const Arguments& arguments, const Shooting& shooting) {
 int Camera(const Arguments& arguments) {
   RefuseMixtures(arguments);
   if (!arguments.study.empty()) CheckStudyName(arguments.study);
-  const std::filesystem::path file = CameraFile(arguments.model);
+  const std::filesystem::path file = DepthCameraFile(arguments.model);
   Shooting shooting{
       .sheet = ReadDepthCameraSheet(file), .errors = ReadDepthCameraErrors(file), .settings = {}, .effects = {}};
   const std::string effects = arguments.effects.value_or("all");
@@ -182,7 +184,7 @@ int Camera(const Arguments& arguments) {
 #else
 
 int Camera(const Arguments& arguments) {
-  (void)CameraFile(arguments.model);
+  (void)DepthCameraFile(arguments.model);
   throw MachineError("this build has no twin (MERLIN_TWIN=OFF)");
 }
 
@@ -211,7 +213,7 @@ void AddCamera(CLI::App& app, int& exit_code) {
   camera->add_flag("--nearest", a->nearest, "take the nearest valid settings instead of refusing");
   camera->add_option("--seed", a->seed, "of the noise; default 1")->check(WholeNumber);
   camera->add_option("--threads", a->threads, "same bits for any number; default 2")->check(CLI::Range(1, 256));
-  camera->add_option("--out", a->out, "folder for the files; default runs/camera-<model>");
+  camera->add_option("--out", a->out, "folder for the files; default runs/camera-<model>")->check(NotEmpty);
   camera->add_option(
       "--study", a->study,
       "instead, a figure: noise, wiggling, integration, flying, multipath, scatter, sun, glass or motion");

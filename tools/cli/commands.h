@@ -24,7 +24,8 @@ void AddEval(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddDoctor(CLI::App& app, int& exit_code);
 
-// Whether a text is one, for CLI11's check: what is wrong, or nothing.
+// For CLI11's checks: what is wrong with a text, or nothing.
+inline std::string NotEmpty(const std::string& text) { return text.empty() ? "expected a value, got nothing" : ""; }
 inline std::string WholeNumber(const std::string& text) {
   const bool whole = !text.empty() && text.size() <= 20 && text.find_first_not_of("0123456789") == std::string::npos;
   return whole ? "" : "expected a whole number from 0 on, got '" + text + "'";

@@ -9,8 +9,10 @@
 #include <thread>
 #include <vector>
 
+#include "scenarios/names.h"
 #include "tools/cli/gl_probe.h"
 #include "tools/cli/licenses.h"
+#include "tools/json_text.h"
 
 namespace merlin::cli {
 namespace {
@@ -18,29 +20,32 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+// What a run reads besides its own file.
 struct Models {
-  fs::path folder;
-  bool car = false;
-  int rooms = 0;
-  int cameras = 0;
+  fs::path home;
+  bool car = false, materials = false;
+  std::size_t scenarios = 0, rooms = 0, cameras = 0;
 
-  bool Complete() const { return car && rooms > 0 && cameras > 0; }
+  bool Complete() const { return car && materials && scenarios > 0 && rooms > 0 && cameras > 0; }
 };
 
-int CountFiles(const fs::path& folder, const char* extension) {
-  std::error_code missing;
-  int count = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, missing))
-    count += entry.path().extension() == extension ? 1 : 0;
-  return count;
+// models/<name>/<name>.urdf, of whatever name.
+bool HasCar(const fs::path& home) {
+  std::error_code unreadable;
+  for (const fs::directory_entry& entry : fs::directory_iterator(home / "models", unreadable))
+    if (fs::exists(entry.path() / (entry.path().filename().string() + ".urdf"), unreadable)) return true;
+  return false;
 }
 
 Models FindModels() {
-  const fs::path folder = fs::path(MERLIN_SOURCE_DIR) / "models";
-  return {.folder = folder,
-          .car = fs::exists(folder / "merlin" / "merlin.urdf"),
-          .rooms = CountFiles(folder / "rooms", ".xml"),
-          .cameras = CountFiles(folder / "cameras", ".yaml")};
+  const fs::path home = Home();
+  std::error_code unreadable;
+  return {.home = home,
+          .car = HasCar(home),
+          .materials = fs::exists(home / "models/materials.yaml", unreadable),
+          .scenarios = ScenarioNames().size(),
+          .rooms = RoomNames().size(),
+          .cameras = CameraNames().size()};
 }
 
 struct Report {
@@ -48,10 +53,10 @@ struct Report {
   Models models;
   unsigned cpu_cores = 0;
 
-  // Without the twin no picture is drawn, and no room is needed.
-  bool Well() const {
+  // A run's: 2 for a wrong MERLIN_HOME, 3 for a machine that draws no picture. Without the twin none is drawn.
+  int ExitCode() const {
     const bool draws = std::any_of(gl.begin(), gl.end(), [](const GlProbe& probe) { return probe.works; });
-    return models.Complete() && (draws || !MERLIN_TWIN);
+    return !models.Complete() ? 2 : draws || !MERLIN_TWIN ? 0 : 3;
   }
 };
 
@@ -60,14 +65,16 @@ void PrintText(const Report& report) {
   fmt::print("twin      {}\n", MERLIN_TWIN ? "built in" : "not built in (MERLIN_TWIN=OFF): no simulation, no pictures");
   for (const GlProbe& probe : report.gl)
     fmt::print("gl        {:<7}{}: {}\n", probe.backend, probe.works ? "works" : "does not open", probe.detail);
-  fmt::print("models    {}: {}, {} rooms, {} cameras\n", report.models.folder.string(),
-             report.models.car ? "the car" : "no car (merlin/merlin.urdf)", report.models.rooms, report.models.cameras);
+  const Models& models = report.models;
+  fmt::print("models    {}: {}, {}, {} rooms, {} cameras, {} scenarios\n", models.home.string(),
+             models.car ? "the car" : "no car (models/<name>/<name>.urdf)",
+             models.materials ? "materials" : "no models/materials.yaml", models.rooms, models.cameras, models.scenarios);
   fmt::print("with     ");
   for (const LinkedWork& work : LinkedWorks())
     if (!work.version.empty()) fmt::print(" {} {};", work.name, work.version);
   fmt::print(" terms: merlin doctor --licenses\n");
-  fmt::print("{}\n", report.Well() ? "All that a run needs works here."
-                                   : "Something a run may need does not work here: see above.");
+  fmt::print("{}\n", report.ExitCode() == 0 ? "All that a run needs works here."
+                                            : "Something a run may need does not work here: see above.");
 }
 
 void PrintJson(const Report& report) {
@@ -79,15 +86,20 @@ void PrintJson(const Report& report) {
     gl.push_back({{"backend", probe.backend}, {"works", probe.works}, {"detail", probe.detail}});
   const Models& models = report.models;
   const Json whole{
-      {"well", report.Well()},
+      {"well", report.ExitCode() == 0},
       {"twin", MERLIN_TWIN != 0},
       {"build", MERLIN_BUILD},
       {"cpu_cores", report.cpu_cores},
       {"gl", gl},
       {"models",
-       {{"folder", models.folder.string()}, {"car", models.car}, {"rooms", models.rooms}, {"cameras", models.cameras}}},
+       {{"folder", (models.home / "models").string()},
+        {"car", models.car},
+        {"materials", models.materials},
+        {"rooms", models.rooms},
+        {"cameras", models.cameras},
+        {"scenarios", models.scenarios}}},
       {"versions", versions}};
-  fmt::print("{}\n", whole.dump(2));
+  fmt::print("{}", JsonText(whole));
 }
 
 void PrintLicenses(bool json) {
@@ -100,7 +112,7 @@ void PrintLicenses(bool json) {
       fmt::print("{:<35}{:<9}{:<42}{}\n", work.name, work.version, work.license, work.how);
   }
   if (json)
-    fmt::print("{}\n", list.dump(2));
+    fmt::print("{}", JsonText(list));
   else
     fmt::print(
         "\nFull texts: /usr/share/doc/*/copyright of the Debian packages, which also name what these link in turn.\n");
@@ -115,7 +127,10 @@ int Doctor(bool licenses, bool json) {
   }
   const Report report{.gl = ProbeGl(), .models = FindModels(), .cpu_cores = std::thread::hardware_concurrency()};
   json ? PrintJson(report) : PrintText(report);
-  return report.Well() ? 0 : 3;
+  if (!report.models.Complete())
+    fmt::print(stderr, "merlin: {}: models or scenarios are missing there; is MERLIN_HOME right?\n",
+               report.models.home.string());
+  return report.ExitCode();
 }
 
 }  // namespace merlin::cli

@@ -18,9 +18,11 @@
 #include "tools/drive/stick.h"
 #if MERLIN_TWIN
 #include "robot/description/description.h"
+#include "scenarios/judge/output_folder.h"
 #include "scenarios/names.h"
 #include "scenarios/run.h"
 #include "tools/cli/run_options.h"
+#include "tools/cli/terminal.h"
 #include "tools/drive/radio_hand.h"
 #endif
 
@@ -70,35 +72,28 @@ class Station {
   std::optional<RawTerminal> terminal_;
 };
 
-// What the operator sees: a line that renews itself on a terminal, a plain one every second elsewhere.
+// What the operator sees: five times a second on a terminal, once a second elsewhere, and at once when the driver changes.
 class StatusLine {
  public:
   void Show(Time now, const HandStatus& status) {
     const bool changed = status.arbitration.driver != driver_;
     driver_ = status.arbitration.driver;
     if (now < next_ && !changed) return;
-    next_ = now + (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(1000));
+    next_ = now + std::chrono::milliseconds(line_.on_terminal() ? 200 : 1000);
     const char* battery = status.energy == EnergyLevel::kEnough ? ""
                           : status.energy == EnergyLevel::kLow  ? " LOW"
                                                                 : " EMPTY";
-    const std::string line =
-        fmt::format("{:7.1f} s  {:5.2f} m/s  steering {:+5.1f} deg  battery {:5.2f} V{}  {}{}{}", Seconds(now),
-                    status.speed_m_s, status.state.steering_rad * 180.0 / std::numbers::pi, status.state.battery_v,
-                    battery, Name(driver_), status.doing.empty() ? "" : ": ", status.doing);
-    if (terminal_)
-      fmt::print(stderr, "\r\033[K{}", line);
-    else
-      fmt::print(stderr, "{}\n", line);
-    std::fflush(stderr);
+    line_.Show(fmt::format("{:7.1f} s  {:5.2f} m/s  steering {:+5.1f} deg  battery {:5.2f} V{}  {}{}{}", Seconds(now),
+                           status.speed_m_s, status.state.steering_rad * 180.0 / std::numbers::pi,
+                           status.state.battery_v, battery, Name(driver_), status.doing.empty() ? "" : ": ",
+                           status.doing));
   }
-  ~StatusLine() {
-    if (terminal_) fmt::print(stderr, "\n");
-  }
+  ~StatusLine() { line_.Keep(); }
 
  private:
   Time next_{0};
   Driver driver_ = Driver::kNobody;
-  bool terminal_ = isatty(STDERR_FILENO) == 1;
+  ProgressLine line_;
 };
 
 RunOptions OptionsOf(const Arguments& arguments) {
@@ -115,6 +110,7 @@ RunOptions OptionsOf(const Arguments& arguments) {
                                       : std::filesystem::path(arguments.out);
   options.gl = GlOf(arguments.gl);
   options.threads = arguments.threads;
+  OutputFolder::Check(options.out);
   return options;
 }
 
@@ -178,7 +174,8 @@ void AddDrive(CLI::App& app, int& exit_code) {
   drive->add_option("--speed", arguments->speed_m_s, "m/s at full stick; default 0.8")->check(TopSpeed);
   drive->add_option("--duration", arguments->duration_s, "seconds after which it ends; default 3600");
   drive->add_option("--seed", arguments->seed, "of all randomness; default the scenario's")->check(WholeNumber);
-  drive->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-drive");
+  drive->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-drive")
+      ->check(NotEmpty);
   drive->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")
       ->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
   drive->add_option("--threads", arguments->threads, "same bits for any number; default one for each camera, and one")->check(CLI::Range(1, 256));

@@ -6,6 +6,7 @@
 
 #include "robot/types/error.h"
 #include "tools/cli/commands.h"
+#include "tools/cli/usage.h"
 #include "tools/drive/raw_terminal.h"
 
 namespace merlin::cli {
@@ -22,9 +23,10 @@ void OnInterrupt(int) {
 }
 
 int Main(int argc, char** argv) {
-  CLI::App app("merlin: a digital twin of a car-like robot with a time-of-flight camera");
+  CLI::App app("merlin: a digital twin of a car-like robot with a time-of-flight camera", "merlin");
   app.set_version_flag("--version", MERLIN_VERSION);
   app.require_subcommand(1);
+  app.formatter(HelpFormatter());
   int exit_code = kPass;
   AddRun(app, exit_code);
   AddDrive(app, exit_code);
@@ -40,7 +42,7 @@ int Main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::fprintf(stderr, "merlin: %s (--help tells more)\n", error.what());
+    std::fprintf(stderr, "merlin: %s (--help tells more)\n", Explain(app, error).c_str());
     return kBadInput;
   }
   return exit_code;

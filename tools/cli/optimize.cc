@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "scenarios/judge/output_path.h"
 #include "scenarios/judge/writers.h"
 #include "slam/graph/g2o_file.h"
 #include "slam/graph/initial_poses.h"
@@ -76,6 +77,7 @@ void Print(const Arguments& arguments, const Solution& solution) {
 }
 
 int RunOptimize(const Arguments& arguments) {
+  if (!arguments.out.empty()) CheckOutputFile(arguments.out);
   const Solution solution = Solve(arguments);
   if (interrupted) return kInterrupted;
   if (!arguments.out.empty()) WriteFile(arguments.out, ToG2o(solution.file));
@@ -96,9 +98,7 @@ void AddOptimize(CLI::App& app, int& exit_code) {
       ->add_option("--objective", arguments->objective,
                    "what is minimised. a: isotropic, as SE-Sync has it; b: chi2, as g2o has it; default b")
       ->check(CLI::IsMember({"a", "b"}));
-  optimize->add_option("--out", arguments->out, "writes the solved graph there")->check([](const std::string& file) {
-    return file.empty() ? "--out: expected the name of a file" : "";
-  });
+  optimize->add_option("--out", arguments->out, "writes the solved graph there")->check(NotEmpty);
   optimize->add_flag("--json", arguments->json, "for machines");
   optimize->callback([arguments, &exit_code] { exit_code = RunOptimize(*arguments); });
 }

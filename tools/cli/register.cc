@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "robot/types/error.h"
+#include "scenarios/judge/output_path.h"
 #include "scenarios/judge/writers.h"
 #include "slam/register/align.h"
 #include "tools/cli/commands.h"
@@ -165,6 +166,7 @@ int Register(const Arguments& a) {
   CheckLength("--max-distance", a.max_distance_m);
   CheckLength("--voxel", a.voxel_m);
   const Pose guess = ReadGuess(a.guess);
+  if (!a.out.empty()) CheckOutputFile(a.out);
   Clouds clouds{ReadPoints(a.source), ReadPoints(a.target), {}, {}};
   clouds.thin_source = a.voxel_m ? Thin(clouds.source.cloud, *a.voxel_m) : clouds.source.cloud;
   clouds.thin_target = a.voxel_m ? Thin(clouds.target.cloud, *a.voxel_m) : clouds.target.cloud;
@@ -194,7 +196,8 @@ void AddRegister(CLI::App& app, int& exit_code) {
   reg->add_option("--guess", a->guess,
                   "T_target_source: x,y,z,roll,pitch,yaw (m, rad), or 16 numbers row by row; default none");
   reg->add_option("--voxel", a->voxel_m, "M: first thins both to one point a cube of this edge");
-  reg->add_option("--out", a->out, "PLY: the source in the target's frame, also where it did not converge");
+  reg->add_option("--out", a->out, "PLY: the source in the target's frame, also where it did not converge")
+      ->check(NotEmpty);
   reg->add_flag("--json", a->json, "for machines");
   reg->footer("exit code: 0 converged, 1 not (few pairs, or a direction that the clouds do not hold), 2 bad input");
   reg->callback([a, &exit_code] { exit_code = Register(*a); });

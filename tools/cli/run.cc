@@ -1,6 +1,5 @@
 // `merlin run`: drives a scenario, judges it, says how it went.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -12,8 +11,10 @@
 #include "scenarios/scenario.h"
 #include "tools/cli/commands.h"
 #if MERLIN_TWIN
+#include "scenarios/judge/output_folder.h"
 #include "scenarios/run.h"
 #include "tools/cli/run_options.h"
+#include "tools/cli/terminal.h"
 #endif
 
 namespace merlin::cli {
@@ -67,28 +68,20 @@ void SetRobot(const std::string& text, RunOptions& options) {
 
 namespace {
 
-// A line that renews itself on a terminal, a plain one every ten seconds of the run elsewhere.
+// A few times a second on a terminal, every ten seconds of the run elsewhere.
 class Progress {
  public:
   explicit Progress(double duration_s) : duration_s_(duration_s) {}
   void Show(Time now, double distance_m, const std::string& doing) {
     const double now_s = Seconds(now);
-    const std::string line = fmt::format("{:6.1f} s of {:.0f} s, {:6.2f} m: {}", now_s, duration_s_, distance_m, doing);
-    if (terminal_) {
-      fmt::print(stderr, "\r\033[K{}", line);
-    } else if (now_s >= next_s_) {
-      fmt::print(stderr, "{}\n", line);
-      next_s_ = now_s + 10.0;
-    }
-    std::fflush(stderr);
-  }
-  ~Progress() {
-    if (terminal_) fmt::print(stderr, "\r\033[K");
+    if (!line_.on_terminal() && now_s < next_s_) return;
+    next_s_ = now_s + 10.0;
+    line_.Show(fmt::format("{:6.1f} s of {:.0f} s, {:6.2f} m: {}", now_s, duration_s_, distance_m, doing));
   }
 
  private:
   double duration_s_, next_s_ = 0.0;
-  bool terminal_ = isatty(STDERR_FILENO) == 1;
+  ProgressLine line_;
 };
 
 std::string Number(const std::optional<double>& value, int digits) {
@@ -141,6 +134,7 @@ int Run(const Arguments& arguments) {
   options.gl = GlOf(arguments.gl);
   options.threads = arguments.threads;
   options.pace = PaceOf(arguments.pace);
+  OutputFolder::Check(options.out);
   RunReport report;
   {
     Progress progress(options.scenario.duration_s);
@@ -148,8 +142,12 @@ int Run(const Arguments& arguments) {
       options.progress = [&progress](Time now, double distance_m, const std::string& doing) { progress.Show(now, distance_m, doing); };
     report = RunScenario(options, interrupted);
   }
-  if (arguments.json) fmt::print("{}", ToJson(report.result));
-  else PrintSummary(report, options.out);
+  if (arguments.json) {
+    if (!report.note.empty()) fmt::print(stderr, "merlin: {}\n", report.note);
+    fmt::print("{}", ToJson(report.result));
+  } else {
+    PrintSummary(report, options.out);
+  }
   return report.result.verdict == Verdict::kPass ? kPass : report.result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
 }
 
@@ -161,12 +159,6 @@ int Run(const Arguments& arguments) {
 }
 
 #endif
-
-}  // namespace
-
-namespace {
-
-std::string NotEmpty(const std::string& text) { return text.empty() ? "expected a value, got nothing" : ""; }
 
 }  // namespace
 

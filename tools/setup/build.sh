@@ -31,12 +31,20 @@ build() { # preset, targets...
   }
 }
 
-# On a terminal one line that counts, else one line.
+# On a terminal one line that counts, cut to its width, which may change meanwhile; else one line.
 show_progress() { # what
   local line
   [ -t 2 ] || say "$1"
   while IFS= read -r line; do
-    [[ -t 2 && $line =~ ^\[[0-9]+/[0-9]+\] ]] && printf '\r\033[Kmerlin: %s %s' "$1" "${BASH_REMATCH[0]}" >&2
+    [[ -t 2 && $line =~ ^\[[0-9]+/[0-9]+\] ]] && line="merlin: ${BASH_REMATCH[0]} $1" && printf '\r\033[K%s' "${line:0:$(terminal_columns) - 1}" >&2
   done
   [ ! -t 2 ] || printf '\r\033[K' >&2
+}
+
+# Of the terminal at stderr; COLUMNS, or 80, where it does not tell.
+terminal_columns() {
+  local size
+  size=$(stty size <&2 2>/dev/null) || size=
+  for size in "${size#* }" "${COLUMNS-}" 80; do [[ ! $size =~ ^[1-9][0-9]*$ ]] || break; done
+  echo "$size"
 }

@@ -92,6 +92,24 @@ TEST(OutputFolder, ReplacesARunThatBrokeOffEvenBeforeItsMarkWasWritten) {
   EXPECT_EQ(Names(temporary.path()), std::set<std::string>{kMarker});
 }
 
+TEST(OutputFolder, ChecksWithoutChangingAnything) {
+  const TemporaryFolder temporary;
+  const fs::path path = temporary.path() / "a" / "b";
+  OutputFolder::Check(path);
+  EXPECT_TRUE(fs::is_empty(temporary.path()));
+  OutputFolder::Check(temporary.path());
+  EXPECT_TRUE(fs::is_empty(temporary.path()));
+  {
+    OutputFolder folder(path);
+    EXPECT_THROW(OutputFolder::Check(path), InputError);  // a run is at work
+    folder.Write("map.ply", "points");
+    folder.Finish("{}");
+  }
+  OutputFolder::Check(path);
+  EXPECT_EQ(Names(path), (std::set<std::string>{kMarker, "map.ply", "result.json"}));
+  EXPECT_EQ(Contents(path / kMarker), "merlin run: complete\n");
+}
+
 TEST(OutputFolder, RefusesAFolderOfSomeoneElse) {
   const TemporaryFolder temporary;
   WriteFile(temporary.path() / "thesis.tex", "years of work");

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
+
+#include "scenarios/judge/writers.h"
+#include "tests/scenarios/judge/temporary_folder.h"
 
 namespace merlin {
 namespace {
@@ -102,6 +106,32 @@ TEST(ToJUnit, MakesEachCheckATestCase) {
             "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"collisions_max\" time=\"0\">\n"
             "      <failure message=\"collisions_max: value not known, limit 0\"/>\n    </testcase>\n"
             "  </testsuite>\n</testsuites>\n");
+}
+
+// What Python's XML parser reads of it: the class name of the first test case. Empty: not well formed.
+std::string ParsedClassName(const std::string& xml) {
+  const TemporaryFolder folder;
+  WriteFile(folder.path() / "junit.xml", xml);
+  const std::string read =
+      "import sys, xml.etree.ElementTree as tree; "
+      "sys.stdout.buffer.write(tree.parse('junit.xml').find('.//testcase').get('classname').encode())";
+  const std::string command = "cd '" + folder.path().string() + "' && python3 -c \"" + read + "\" >name 2>error";
+  return std::system(command.c_str()) == 0 ? Contents(folder.path() / "name") : "";
+}
+
+TEST(ToJUnit, KeepsEveryCharacterThatXmlMayHold) {
+  for (const std::string name : {"Prüfung Flur <Ä>", "走廊", "\U0001F697 \"x\" & y's", "\xC2\x85", "a\tb\nc\rd", "\U0010FFFD"})
+    EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = name})), name);
+}
+
+TEST(ToJUnit, StaysWellFormedWhateverTheText) {
+  EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "a\xff" "b"})), "a\uFFFD" "b");
+  EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "\xC3"})), "\uFFFD");
+  EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = std::string("\0\x01\x1F", 3)})), "???");
+  EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "\xEF\xBF\xBE\xEF\xBF\xBF"})), "??");     // U+FFFE, U+FFFF
+  EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "\xED\xA0\x80"})), "\uFFFD\uFFFD\uFFFD");  // a surrogate
+  const std::string fault = ToJUnit({.scenario = "s", .fault = "käse\xff: \"lost\""});
+  EXPECT_NE(fault.find("<error message=\"käse\uFFFD: &quot;lost&quot;\"/>"), std::string::npos) << fault;
 }
 
 TEST(ToJUnit, ReportsAnInterruptedRunAsAnError) {
