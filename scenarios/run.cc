@@ -186,7 +186,7 @@ HardwareCameras CamerasOf(const TwinOptions& twin) {
   HardwareCameras cameras{.depth = {twin.depth.sheet, twin.world.car.T_base_depth, twin.depth.rate_hz},
                           .depth_settings = twin.depth.settings};
   if (twin.color) {
-    cameras.color = {twin.color->sheet, twin.world.car.T_base_color, twin.color->rate_hz};
+    cameras.color = {twin.color->sheet, twin.world.car.T_base_color.value(), twin.color->rate_hz};
     cameras.color_settings = twin.color->settings.value_or(DefaultSettings(twin.color->sheet));
   }
   return cameras;
