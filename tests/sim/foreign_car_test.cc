@@ -105,6 +105,17 @@ TEST_P(AnyCar, SeesWithItsCamerasAtTheirPlaces) {
     EXPECT_GE(mj_name2id(world->model(), mjOBJ_BODY, link.name.c_str()), 0) << link.name;
 }
 
+// What MuJoCo refuses of the car is the car's fault, not the room's.
+TEST_P(AnyCar, IsBlamedForWhatDoesNotCompile) {
+  for (CarLink& link : car_.links) link.mass_kg = 0.0;
+  try {
+    Place(kPlane);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with(car_.file.string() + ": the car does not compile")) << error.what();
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Foreign, AnyCar, testing::Values(Foreign{"rover", WriteRover}, Foreign{"buggy", WriteBuggy}),
                          [](const auto& each) { return std::string(each.param.name); });
 
