@@ -333,17 +333,19 @@ void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_roo
     if (axis.z() < 0.0) TurnRound(link);
     const Eigen::Vector3d joint = T_base_root * tree.T_root(car.knuckles[i]).translation();
     pivots[i] = joint + axis * (car.wheel_radius_m - joint.z()) / axis.z();
-    if (!(std::abs(pivots[i].x() - car.wheelbase_m) <= kTrailMax * car.wheelbase_m))
-      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': its axis", link.joint_name),
-                       fmt::format("at x {:.6g} m as the wheel's middle", car.wheelbase_m),
-                       fmt::format("{:.6g} m", pivots[i].x()));
   }
+  const CarLink& left = tree.Link(car.knuckles[0]);
+  const double pivot_m = 0.5 * (pivots[0].x() + pivots[1].x());
+  if (!(std::abs(pivot_m - car.wheelbase_m) <= kTrailMax * car.wheelbase_m))
+    throw InputError(source.Where(left.joint_name), fmt::format("joint '{}': its axis", left.joint_name),
+                     fmt::format("at x {:.6g} m as the wheel's middle", car.wheelbase_m),
+                     fmt::format("{:.6g} m", pivot_m));
   car.steering_track_m = pivots[0].y() - pivots[1].y();
   const double off_m = OffSymmetry_m(pivots[0], pivots[1]);
   asymmetry.Add("the steering axes", off_m);
   if (!(car.steering_track_m > 0.0) || IsLopsided(off_m))
-    throw InputError(source.Where(tree.Link(car.knuckles[0]).joint_name),
-                     fmt::format("joints '{}' and '{}': the two steering axes", tree.Link(car.knuckles[0]).joint_name,
+    throw InputError(source.Where(left.joint_name),
+                     fmt::format("joints '{}' and '{}': the two steering axes", left.joint_name,
                                  tree.Link(car.knuckles[1]).joint_name),
                      fmt::format("one on each side, less than {:g} mm off symmetry", 1e3 * kLopsided_m),
                      fmt::format("{} and {}", Text(pivots[0]), Text(pivots[1])));
