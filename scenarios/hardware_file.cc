@@ -37,8 +37,8 @@ HardwareCameras CamerasOf(const Scenario& scenario) {
   HardwareCameras cameras{.depth = {ReadDepthCameraSheet(DepthCameraFile(depth.camera)), car.T_base_depth, depth.rate_hz},
                           .depth_settings = SettingsOf(depth)};
   cameras.depth.sheet.latency_s = depth.latency_s.value_or(cameras.depth.sheet.latency_s);
-  if (const auto& color = scenario.sensors.color) {
-    cameras.color = {ReadColorCameraSheet(ColorCameraFile(color->camera)), car.T_base_color, color->rate_hz};
+  if (const auto& color = scenario.sensors.color; color && car.T_base_color) {
+    cameras.color = {ReadColorCameraSheet(ColorCameraFile(color->camera)), *car.T_base_color, color->rate_hz};
     cameras.color->sheet.latency_s = color->latency_s.value_or(cameras.color->sheet.latency_s);
     cameras.color_settings = DefaultSettings(cameras.color->sheet);
     if (color->exposure_us) cameras.color_settings = {.exposure_s = *color->exposure_us * 1e-6, .auto_exposure = false};

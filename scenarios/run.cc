@@ -70,8 +70,8 @@ class Pacer {
 // One run of whatever robot: drive, judge, write.
 class Session {
  public:
-  Session(const RunOptions& options, const std::atomic<bool>& stop)
-      : options_(options), stop_(stop), car_(BelievedCar(options.scenario.car)) {}
+  Session(const RunOptions& options, const CarDescription& car, const std::atomic<bool>& stop)
+      : options_(options), stop_(stop), car_(car) {}
 
   // keep: notes the truth at a stamp. time: of the world, or of the clock where there is none.
   RunReport Drive(const Robot& robot, const std::function<TrueWorld()>& true_world, const std::function<void(Time)>& keep,
@@ -121,12 +121,12 @@ class Session {
  private:
   const RunOptions& options_;
   const std::atomic<bool>& stop_;
-  CarDescription car_;
+  const CarDescription& car_;
   WallClock::time_point begin_ = WallClock::now();
 };
 
-RunReport RunInTwin(const RunOptions& options, const std::atomic<bool>& stop) {
-  Session session(options, stop);
+RunReport RunInTwin(const RunOptions& options, const CarDescription& car, const std::atomic<bool>& stop) {
+  Session session(options, car, stop);
   std::unique_ptr<Twin> twin;
   std::string note;
   MakeWithColor(TwinOptionsOf(options.scenario, options), options.scenario, note,
@@ -186,14 +186,14 @@ HardwareCameras CamerasOf(const TwinOptions& twin) {
   HardwareCameras cameras{.depth = {twin.depth.sheet, twin.world.car.T_base_depth, twin.depth.rate_hz},
                           .depth_settings = twin.depth.settings};
   if (twin.color) {
-    cameras.color = {twin.color->sheet, twin.world.car.T_base_color, twin.color->rate_hz};
+    cameras.color = {twin.color->sheet, twin.world.car.T_base_color.value(), twin.color->rate_hz};
     cameras.color_settings = twin.color->settings.value_or(DefaultSettings(twin.color->sheet));
   }
   return cameras;
 }
 
-RunReport RunEmulated(const RunOptions& options, const std::atomic<bool>& stop) {
-  Session session(options, stop);
+RunReport RunEmulated(const RunOptions& options, const CarDescription& car, const std::atomic<bool>& stop) {
+  Session session(options, car, stop);
   const SocketFolder sockets;
   RealClock clock({}, Time::max());
   std::unique_ptr<EmulatedRobot> emulated;
@@ -231,8 +231,8 @@ RunReport RunEmulated(const RunOptions& options, const std::atomic<bool>& stop) 
   return report;
 }
 
-RunReport RunOnHardware(const RunOptions& options, const std::atomic<bool>& stop) {
-  Session session(options, stop);
+RunReport RunOnHardware(const RunOptions& options, const CarDescription& car, const std::atomic<bool>& stop) {
+  Session session(options, car, stop);
   const HardwareConfig config = ReadHardwareFile(options.hardware_file);
   HardwareCameras cameras = CamerasOf(options.scenario);
   RealClock clock(config.clock, Time::max());
@@ -247,20 +247,30 @@ RunReport RunOnHardware(const RunOptions& options, const std::atomic<bool>& stop
       "", "");
 }
 
-}  // namespace
-
-RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop) {
-  if (IsOnStand(options.scenario.task) && (options.robot != RobotKind::kTwin || options.hand))
-    throw InputError("task.behavior", "turn_on_stand: only the twin has a stand, and nobody drives on it",
-                     "merlin run with --robot twin");
+RunReport RunWith(const RunOptions& options, const CarDescription& car, const std::atomic<bool>& stop) {
   switch (options.robot) {
     case RobotKind::kEmulated:
-      return RunEmulated(options, stop);
+      return RunEmulated(options, car, stop);
     case RobotKind::kHardware:
-      return RunOnHardware(options, stop);
+      return RunOnHardware(options, car, stop);
     default:
-      return RunInTwin(options, stop);
+      return RunInTwin(options, car, stop);
   }
+}
+
+}  // namespace
+
+RunReport RunScenario(const RunOptions& asked, const std::atomic<bool>& stop) {
+  if (IsOnStand(asked.scenario.task) && (asked.robot != RobotKind::kTwin || asked.hand))
+    throw InputError("task.behavior", "turn_on_stand: only the twin has a stand, and nobody drives on it",
+                     "merlin run with --robot twin");
+  const CarDescription car = BelievedCar(asked.scenario.car);
+  std::vector<std::string> warnings = car.warnings;
+  RunOptions options = asked;
+  LeaveOutWhatTheCarLacks(car, options.scenario.sensors, warnings);
+  RunReport report = RunWith(options, car, stop);
+  for (const std::string& warning : warnings) report.note += (report.note.empty() ? "" : "; ") + warning;
+  return report;
 }
 
 }  // namespace merlin

@@ -49,7 +49,7 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, 1.0 / twin.depth.sheet.ExposureSpan_s(twin.depth.settings));
   for (const ObstacleEvent& event : scenario.obstacles) RequireMaterial(event.material, twin.materials);
   twin.depth.sheet.latency_s = sensors.depth.latency_s.value_or(twin.depth.sheet.latency_s);
-  if (sensors.color) {
+  if (sensors.color && twin.world.car.T_base_color) {
     twin.color.emplace(ReadColorCameraSheet(ColorCameraFile(sensors.color->camera)), sensors.color->rate_hz, options.gl);
     RequireRate("sensors.color.rate_hz", sensors.color->rate_hz, twin.color->sheet.rate_max_hz);
     twin.color->sheet.latency_s = sensors.color->latency_s.value_or(twin.color->sheet.latency_s);
@@ -57,7 +57,7 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
       twin.color->settings = ColorSettings{.exposure_s = *sensors.color->exposure_us * 1e-6, .auto_exposure = false};
     twin.color->motion_blur = sensors.color->motion_blur;
   }
-  if (sensors.compass)
+  if (sensors.compass && twin.world.car.T_base_compass)
     twin.compass.emplace(sim::CompassConfig{sensors.compass->noise_rad, sensors.compass->noise_rad, sensors.compass->steel}, sensors.compass->rate_hz);
   twin.end = FromSeconds(scenario.duration_s);
   twin.threads = options.threads;
@@ -67,6 +67,21 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
 CarDescription BelievedCar(const CarChoice& choice) {
   const CarDescription car = ReadCar(CarFile(choice.model));
   return choice.calibration.empty() ? car : Calibrated(car, ReadCalibration(choice.calibration));
+}
+
+void LeaveOutWhatTheCarLacks(const CarDescription& car, Sensors& sensors, std::vector<std::string>& warnings) {
+  const std::string lacks = fmt::format("the car '{}' has no ", car.name);
+  if (sensors.color && !car.T_base_color) {
+    if (sensors.color->required)
+      throw InputError("sensors.color.required", lacks + "colour camera",
+                       "false, or a car whose mapping names a color_camera_frame");
+    sensors.color.reset();
+    warnings.push_back("depth only: " + lacks + "colour camera");
+  }
+  if (sensors.compass && !car.T_base_compass) {
+    sensors.compass.reset();
+    warnings.push_back("without headings: " + lacks + "compass");
+  }
 }
 
 void MakeWithColor(TwinOptions options, const Scenario& scenario, std::string& note,

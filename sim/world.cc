@@ -48,6 +48,16 @@ void RefuseFaults(const DrivetrainConfig& config) {
   throw InputError(all);
 }
 
+// The error of a room that does not compile with the car in it: the car's, where the room does without.
+InputError CompileError(const WorldOptions& options, const std::string& mujoco_message) {
+  const SpecPtr room = ReadRoom(options.room, options.curtain_closed);
+  SetOptions(room.get());
+  const std::unique_ptr<mjModel, void (*)(mjModel*)> alone(mj_compile(room.get(), nullptr), mj_deleteModel);
+  const bool car = alone && !options.car.file.empty();
+  if (car) return RoomError(options.car.file, "the car does not compile", mujoco_message);
+  return RoomError(options.room, "the room with the car in it does not compile", mujoco_message);
+}
+
 std::string ObstacleName(const std::string& name) { return "obstacle_" + name; }
 
 }  // namespace
@@ -64,7 +74,7 @@ World::World(const WorldOptions& options) {
   if (pans) PanServo::AddTo(spec.get(), true_car);
   AddObstacles(spec.get(), options.obstacles);
   model_.reset(mj_compile(spec.get(), nullptr));
-  if (!model_) throw RoomError(options.room, "the room with the car in it does not compile", mjs_getError(spec.get()));
+  if (!model_) throw CompileError(options, mjs_getError(spec.get()));
   data_.reset(mj_makeData(model_.get()));
   if (!data_) throw std::runtime_error("MuJoCo cannot make its data: out of memory");
   ReadNumerics(options.room.string());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "robot/description/drivetrain_numbers.h"
+#include "robot/description/fault_list.h"
 #include "robot/types/error.h"
 #include "robot/types/nearest_name.h"
 
@@ -17,9 +18,13 @@ namespace merlin {
 namespace {
 
 constexpr double kSameLength_m = 5e-4;       // lengths that differ by less are the same: files round
+constexpr double kSymmetric_m = 1e-4;        // an axle that is off symmetry by less is symmetric ...
+constexpr double kLopsided_m = 5e-3;         // ... by this or more is none; between them its mean counts
 constexpr double kParallel = 0.99;           // cosine of two directions that are the same
 constexpr double kTrailMax = 0.02;           // of the wheelbase: a wheel's middle before or behind its steering axis
 constexpr std::array kSides = {+1.0, -1.0};  // left, right
+
+using Middles = std::array<Eigen::Vector3d, 4>;  // of the wheels
 
 std::string Text(const Eigen::Vector3d& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", p.x(), p.y(), p.z()); }
 
@@ -39,6 +44,14 @@ class Tree {
   bool IsBelow(std::size_t index, std::size_t ancestor) const {
     while (index != ancestor && index != 0) index = parents_[index];
     return index == ancestor;
+  }
+  // The nearest of these links that it hangs on, or that it is.
+  std::size_t HeadOf(std::size_t index, const std::set<std::size_t>& heads) const {
+    while (!heads.contains(index)) index = parents_[index];
+    return index;
+  }
+  bool Has(const RoleName& frame) const {
+    return std::ranges::find(links_, frame.name, &CarLink::name) != links_.end();
   }
   std::size_t LinkOf(const RoleName& frame) const {
     return Find(frame, "link", [](const CarLink& link) { return link.name; });
@@ -75,6 +88,21 @@ class Tree {
   std::vector<Pose> T_root_link_;
 };
 
+// What steers is revolute; the mapping may give the limits that a continuous joint has not, or narrower ones.
+void LimitKnuckle(const UrdfSource& source, const CarMapping& mapping, CarLink& link) {
+  if (link.joint == CarLink::Joint::kContinuous) {
+    if (!mapping.steering_limit_rad)
+      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}' must steer", link.joint_name),
+                       fmt::format("type revolute, with limits, or steering_limit_rad in {}",
+                                   MappingFile(source.path).filename().string()));
+    link.joint = CarLink::Joint::kRevolute;
+    link.joint_min_rad = -HUGE_VAL, link.joint_max_rad = HUGE_VAL;
+  }
+  if (!mapping.steering_limit_rad) return;
+  link.joint_min_rad = std::max(link.joint_min_rad, -*mapping.steering_limit_rad);
+  link.joint_max_rad = std::min(link.joint_max_rad, *mapping.steering_limit_rad);
+}
+
 // One role for each joint, and each joint able to play it.
 void FindRoles(const UrdfSource& source, const CarMapping& mapping, Tree& tree, CarDescription& car) {
   std::set<std::string> taken;
@@ -85,14 +113,13 @@ void FindRoles(const UrdfSource& source, const CarMapping& mapping, Tree& tree, 
       throw InputError(role.where, fmt::format("'{}': joint '{}' already has another role", role.role, role.name));
     if (link.joint != kind)
       throw InputError(source.Where(role.name), fmt::format("joint '{}' must {}", role.name, must), expected);
-    if (!(link.mass_kg > 0.0))
-      throw InputError(source.Where(link.name), fmt::format("link '{}' moves: it needs a mass", link.name));
     return index;
   };
   for (std::size_t i = 0; i < 4; ++i)
     car.wheels[i].link =
         find(mapping.wheel_joints[i], CarLink::Joint::kContinuous, "turn endlessly", "type continuous");
   for (std::size_t i = 0; i < 2; ++i) {
+    LimitKnuckle(source, mapping, tree.Link(tree.LinkBehind(mapping.steer_joints[i])));
     car.knuckles[i] = find(mapping.steer_joints[i], CarLink::Joint::kRevolute, "steer", "type revolute, with limits");
     if (!tree.IsBelow(car.wheels[i].link, car.knuckles[i]))
       throw InputError(source.Where(mapping.wheel_joints[i].name),
@@ -160,9 +187,8 @@ Tyre FindTyre(const UrdfSource& source, const CarMapping& mapping, const CarLink
 }
 
 // The wheels' radius and their middles in the root's frame.
-std::array<Eigen::Vector3d, 4> DeriveTyres(const UrdfSource& source, const CarMapping& mapping, Tree& tree,
-                                           CarDescription& car) {
-  std::array<Eigen::Vector3d, 4> middles;
+Middles DeriveTyres(const UrdfSource& source, const CarMapping& mapping, Tree& tree, CarDescription& car) {
+  Middles middles;
   for (std::size_t i = 0; i < 4; ++i) {
     CarWheel& wheel = car.wheels[i];
     const CarLink& link = tree.Link(wheel.link);
@@ -182,19 +208,44 @@ std::array<Eigen::Vector3d, 4> DeriveTyres(const UrdfSource& source, const CarMa
   return middles;
 }
 
-// From the rear axle and the way to the front one. A base within rounding of the root is the root.
-Pose BaseInRoot(const UrdfSource& source, const std::array<Eigen::Vector3d, 4>& middles, double radius_m) {
-  const Eigen::Vector3d rear = 0.5 * (middles[2] + middles[3]), front = 0.5 * (middles[0] + middles[1]);
-  const Eigen::Vector3d axle = middles[2] - middles[3];
-  const Eigen::Vector3d left = axle.normalized();
-  const Eigen::Vector3d way = front - rear - left * left.dot(front - rear);
-  if (!(axle.norm() > kSameLength_m && way.norm() > kSameLength_m))
-    throw InputError(source.path.string(), "the wheels stand in one another", "two axles, one before the other");
-  const Eigen::Vector3d ahead = way.normalized();
+// How far an axle is from symmetric about the base's xz plane: its left wheel, mirrored, from its right one.
+double OffSymmetry_m(const Eigen::Vector3d& left_base, const Eigen::Vector3d& right_base) {
+  return (left_base.cwiseProduct(Eigen::Vector3d(1, -1, 1)) - right_base).norm();
+}
+
+double FrontOff_m(const Middles& base) { return OffSymmetry_m(base[0], base[1]); }
+double RearOff_m(const Middles& base) { return OffSymmetry_m(base[2], base[3]); }
+
+Middles Transformed(const Pose& T, const Middles& middles) {
+  return {T * middles[0], T * middles[1], T * middles[2], T * middles[3]};
+}
+
+// The base on the ground below the rear axle's middle, y along `left`, x on to the front axle.
+Pose BaseAlong(const Eigen::Vector3d& left, const Middles& root, double radius_m) {
+  const Eigen::Vector3d rear = 0.5 * (root[2] + root[3]), front = 0.5 * (root[0] + root[1]);
+  const Eigen::Vector3d ahead = (front - rear - left * left.dot(front - rear)).normalized();
   Pose T_root_base = Pose::Identity();
   T_root_base.linear() << ahead, left, ahead.cross(left);
   T_root_base.translation() = rear - radius_m * T_root_base.linear().col(2);
-  if (!(T_root_base.linear()(2, 2) > kParallel))
+  return T_root_base;
+}
+
+// Its y is along the rear axle, or along the front one if all wheels stand more symmetrically about that: one wheel
+// that is off turns its own axle, and must not turn the car. A base within rounding of the root is the root.
+Pose BaseInRoot(const UrdfSource& source, const Middles& root, double radius_m) {
+  const Eigen::Vector3d rear_axle = root[2] - root[3], front_axle = root[0] - root[1];
+  const Eigen::Vector3d ahead = root[0] + root[1] - root[2] - root[3], left = rear_axle.normalized();
+  if (!(rear_axle.norm() > kSameLength_m && front_axle.norm() > kSameLength_m &&
+        (ahead - left * left.dot(ahead)).norm() > 2.0 * kSameLength_m))
+    throw InputError(source.path.string(), "the wheels stand in one another", "two axles, one before the other");
+  const auto off_m = [&root](const Pose& T_root_base) {
+    const Middles base = Transformed(T_root_base.inverse(), root);
+    return std::max(FrontOff_m(base), RearOff_m(base));
+  };
+  Pose T_root_base = BaseAlong(left, root, radius_m);
+  const Pose by_front = BaseAlong(front_axle.normalized(), root, radius_m);
+  if (off_m(by_front) < off_m(T_root_base) - kSymmetric_m) T_root_base = by_front;
+  if (!(T_root_base.linear()(2, 2) > kParallel && front_axle.dot(rear_axle) > 0.0))
     throw InputError(source.path.string(), "the wheels do not stand as their roles say",
                      "the root's z up, left wheels on the left, front wheels in front");
   return T_root_base.isApprox(Pose::Identity(), 1e-6) ? Pose::Identity() : T_root_base;
@@ -213,23 +264,43 @@ void PutBaseAboveRoot(const Pose& T_base_root, CarDescription& car) {
   if (car.pan) ++car.pan->link;
 }
 
+// The axles that are off symmetry by less than kLopsided_m, for one warning.
+class Asymmetry {
+ public:
+  void Add(const std::string& what, double off_m) {
+    if (off_m > kSymmetric_m) text_ += fmt::format("{}{} by {:.2f} mm", text_.empty() ? "" : ", ", what, 1e3 * off_m);
+  }
+  void Warn(const UrdfSource& source, CarDescription& car) const {
+    if (!text_.empty())
+      car.warnings.push_back(fmt::format("{}: left and right are not symmetric: {}; their means count (up to {:g} mm)",
+                                         source.path.string(), text_, 1e3 * kLopsided_m));
+  }
+
+ private:
+  std::string text_;
+};
+
+bool IsLopsided(double off_m) { return !(off_m < kLopsided_m - 1e-9); }  // files round
+
 // Wheels as on a car: two axles, each symmetric about the base's x axis, all on the ground.
-void DeriveWheels(const UrdfSource& source, Tree& tree, const std::array<Eigen::Vector3d, 4>& middles_root,
-                  const Pose& T_base_root, CarDescription& car) {
-  std::array<Eigen::Vector3d, 4> middles;
-  for (std::size_t i = 0; i < 4; ++i) middles[i] = T_base_root * middles_root[i];
-  const double front_track_m = middles[0].y() - middles[1].y(), rear_track_m = middles[2].y() - middles[3].y();
+void DeriveWheels(const UrdfSource& source, Tree& tree, const Middles& middles_root, const Pose& T_base_root,
+                  CarDescription& car, Asymmetry& asymmetry) {
+  const Middles middles = Transformed(T_base_root, middles_root);
   car.wheelbase_m = 0.5 * (middles[0].x() + middles[1].x());
-  car.track_m = 0.5 * (front_track_m + rear_track_m);
-  for (std::size_t i = 0; i < 4; ++i) {
-    CarLink& link = tree.Link(car.wheels[i].link);
-    const Eigen::Vector3d expected(i < 2 ? car.wheelbase_m : 0.0,
-                                   0.5 * kSides[i % 2] * (i < 2 ? front_track_m : rear_track_m), car.wheel_radius_m);
-    if (!((middles[i] - expected).norm() <= kSameLength_m))
+  car.track_m = 0.5 * (middles[0].y() - middles[1].y() + middles[2].y() - middles[3].y());
+  for (const std::size_t left : {0u, 2u}) {
+    const CarLink& link = tree.Link(car.wheels[left].link);
+    const double off_m = OffSymmetry_m(middles[left], middles[left + 1]);
+    asymmetry.Add(left == 0 ? "the front wheels" : "the rear wheels", off_m);
+    if (IsLopsided(off_m))
       throw InputError(source.Where(link.name), fmt::format("'{}': the wheels are not two axles of one car", link.name),
-                       "its middle at " + Text(expected) + " from the ground below the rear axle's middle",
-                       Text(middles[i]));
-    const double along = (T_base_root.linear() * tree.AxisInRoot(car.wheels[i].link)).y();
+                       fmt::format("it and '{}' less than {:g} mm off symmetry about the car's middle",
+                                   tree.Link(car.wheels[left + 1].link).name, 1e3 * kLopsided_m),
+                       fmt::format("{:.6g} mm: {} and {}", 1e3 * off_m, Text(middles[left]), Text(middles[left + 1])));
+  }
+  for (const CarWheel& wheel : car.wheels) {
+    CarLink& link = tree.Link(wheel.link);
+    const double along = (T_base_root.linear() * tree.AxisInRoot(wheel.link)).y();
     if (std::abs(along) < kParallel)
       throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': axis", link.joint_name),
                        "the axle's direction");
@@ -250,7 +321,8 @@ void TurnRound(CarLink& link) {
   link.joint_min_rad = -link.joint_min_rad, link.joint_max_rad = -link.joint_max_rad;
 }
 
-void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_root, CarDescription& car) {
+void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_root, CarDescription& car,
+                    Asymmetry& asymmetry) {
   std::array<Eigen::Vector3d, 2> pivots;
   for (std::size_t i = 0; i < 2; ++i) {
     CarLink& link = tree.Link(car.knuckles[i]);
@@ -261,16 +333,22 @@ void DeriveSteering(const UrdfSource& source, Tree& tree, const Pose& T_base_roo
     if (axis.z() < 0.0) TurnRound(link);
     const Eigen::Vector3d joint = T_base_root * tree.T_root(car.knuckles[i]).translation();
     pivots[i] = joint + axis * (car.wheel_radius_m - joint.z()) / axis.z();
-    if (!(std::abs(pivots[i].x() - car.wheelbase_m) <= kTrailMax * car.wheelbase_m))
-      throw InputError(source.Where(link.joint_name), fmt::format("joint '{}': its axis", link.joint_name),
-                       fmt::format("at x {:.6g} m as the wheel's middle", car.wheelbase_m),
-                       fmt::format("{:.6g} m", pivots[i].x()));
   }
+  const CarLink& left = tree.Link(car.knuckles[0]);
+  const double pivot_m = 0.5 * (pivots[0].x() + pivots[1].x());
+  if (!(std::abs(pivot_m - car.wheelbase_m) <= kTrailMax * car.wheelbase_m))
+    throw InputError(source.Where(left.joint_name), fmt::format("joint '{}': its axis", left.joint_name),
+                     fmt::format("at x {:.6g} m as the wheel's middle", car.wheelbase_m),
+                     fmt::format("{:.6g} m", pivot_m));
   car.steering_track_m = pivots[0].y() - pivots[1].y();
-  if (!(car.steering_track_m > 0.0 && std::abs(pivots[0].y() + pivots[1].y()) <= 2.0 * kSameLength_m))
-    throw InputError(source.Where(tree.Link(car.knuckles[0]).joint_name), "the two steering axes",
-                     "one on each side, equally far out",
-                     fmt::format("y {:.6g} m and {:.6g} m", pivots[0].y(), pivots[1].y()));
+  const double off_m = OffSymmetry_m(pivots[0], pivots[1]);
+  asymmetry.Add("the steering axes", off_m);
+  if (!(car.steering_track_m > 0.0) || IsLopsided(off_m))
+    throw InputError(source.Where(left.joint_name),
+                     fmt::format("joints '{}' and '{}': the two steering axes", left.joint_name,
+                                 tree.Link(car.knuckles[1]).joint_name),
+                     fmt::format("one on each side, less than {:g} mm off symmetry", 1e3 * kLopsided_m),
+                     fmt::format("{} and {}", Text(pivots[0]), Text(pivots[1])));
   car.steering_max_rad = HUGE_VAL;
   for (std::size_t i = 0; i < 2; ++i) {
     const CarLink& link = tree.Link(car.knuckles[i]);
@@ -299,12 +377,35 @@ void DerivePan(const UrdfSource& source, const CarMapping& mapping, Tree& tree, 
   if (!(link.joint_min_rad <= 0.0 && link.joint_max_rad >= 0.0 && link.joint_speed_max_rad_s > 0.0))
     throw InputError(where, what + ": limits", "lower <= 0 <= upper, and a velocity above 0");
   for (const RoleName& camera : {mapping.depth_camera, mapping.color_camera})
-    if (!tree.IsBelow(tree.LinkOf(camera), index))
+    if (tree.Has(camera) && !tree.IsBelow(tree.LinkOf(camera), index))
       throw InputError(where, what + " turns the cameras", fmt::format("'{}' below it", camera.name));
   const Eigen::Vector3d pivot = T_base_root * tree.T_root(index).translation();
   car.pan = CarPan{.link = index,
                    .T_base_pan = AtAxle(pivot, axis.z() < 0.0 ? Eigen::Vector3d(-axis) : axis),
                    .slew_rad_s = link.joint_speed_max_rad_s};
+}
+
+// What moves as one piece, the body, a knuckle or a wheel, needs a mass somewhere.
+void RefuseMassless(const UrdfSource& source, Tree& tree, const CarDescription& car) {
+  std::set<std::size_t> heads{0, car.knuckles[0], car.knuckles[1]};
+  for (const CarWheel& wheel : car.wheels) heads.insert(wheel.link);
+  FaultList faults;
+  for (const std::size_t head : heads) {
+    double mass_kg = 0.0;
+    std::size_t named = head;  // the first that is seen or touches
+    for (std::size_t i = car.links.size(); i-- > head;) {
+      if (tree.HeadOf(i, heads) != head) continue;
+      mass_kg += car.links[i].mass_kg;
+      if (!car.links[i].visual.empty() || !car.links[i].collision.empty()) named = i;
+    }
+    const std::string& name = car.links[named].name;
+    if (!(mass_kg > 0.0))
+      faults.Add(
+          {source.Where(name),
+           fmt::format("link '{}' moves: it needs a mass, and neither it nor a link that is fixed to it has one", name),
+           "an <inertial> with <mass> and <inertia>"});
+  }
+  faults.ThrowIfAny();
 }
 
 // A camera's optical frame in the link that its role names: x right, y down, z ahead in x ahead, y left, z up.
@@ -337,15 +438,20 @@ Drivetrain ReadDrivetrain(const UrdfSource& source) {
 void DeriveGeometry(const UrdfSource& source, const CarMapping& mapping, CarDescription& car) {
   Tree tree(source, car.links);
   FindRoles(source, mapping, tree, car);
-  const auto middles = DeriveTyres(source, mapping, tree, car);
+  const Middles middles = DeriveTyres(source, mapping, tree, car);
   const Pose T_base_root = BaseInRoot(source, middles, car.wheel_radius_m).inverse();
-  DeriveWheels(source, tree, middles, T_base_root, car);
-  DeriveSteering(source, tree, T_base_root, car);
+  Asymmetry asymmetry;
+  DeriveWheels(source, tree, middles, T_base_root, car, asymmetry);
+  DeriveSteering(source, tree, T_base_root, car, asymmetry);
+  asymmetry.Warn(source, car);
   const auto frame = [&](const RoleName& role) { return T_base_root * tree.T_root(tree.LinkOf(role)); };
+  // A mapping that says nothing of it leaves a sensor out.
+  const auto left_out = [&](const RoleName& role) { return mapping.has_file && role.where.empty() && !tree.Has(role); };
   car.T_base_depth = frame(mapping.depth_camera) * OpticalIn(mapping.depth_camera);
-  car.T_base_color = frame(mapping.color_camera) * OpticalIn(mapping.color_camera);
-  car.T_base_compass = frame(mapping.compass);
+  if (!left_out(mapping.color_camera)) car.T_base_color = frame(mapping.color_camera) * OpticalIn(mapping.color_camera);
+  if (!left_out(mapping.compass)) car.T_base_compass = frame(mapping.compass);
   DerivePan(source, mapping, tree, T_base_root, car);
+  RefuseMassless(source, tree, car);
   if (!T_base_root.matrix().isIdentity(0.0)) PutBaseAboveRoot(T_base_root, car);
 }
 

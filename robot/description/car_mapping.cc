@@ -4,10 +4,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
-#include <map>
+#include <set>
 #include <vector>
 
 #include "robot/description/drivetrain_numbers.h"
+#include "robot/description/fault_list.h"
 #include "robot/types/error.h"
 #include "robot/types/nearest_name.h"
 
@@ -17,13 +18,14 @@ namespace {
 // One map of the file: every key asked for, none twice, none left over.
 class MapReader {
  public:
-  MapReader(std::string file, const YAML::Node& map, const std::string& what) : file_(std::move(file)), map_(map) {
+  MapReader(std::string file, const YAML::Node& map, const std::string& what, FaultList& faults)
+      : file_(std::move(file)), map_(map), faults_(faults) {
     if (!map.IsMap()) throw InputError(Where(map), what, "a map of keys");
-    std::map<std::string, bool> seen;
+    std::set<std::string> seen;
     for (const auto& entry : map) {
       if (!entry.first.IsScalar()) throw InputError(Where(entry.first), "a key that is no name");
-      if (!seen.emplace(entry.first.Scalar(), true).second)
-        throw InputError(Where(entry.first), fmt::format("'{}' is given twice", entry.first.Scalar()));
+      if (!seen.insert(entry.first.Scalar()).second)
+        faults_.Add({Where(entry.first), fmt::format("'{}' is given twice", entry.first.Scalar())});
     }
   }
   std::string Where(const YAML::Node& node) const { return fmt::format("{}:{}", file_, node.Mark().line + 1); }
@@ -37,31 +39,35 @@ class MapReader {
     const YAML::Node node = Find(role);
     if (!node.IsDefined()) return false;
     if (!node.IsScalar() || node.Scalar().empty())
-      throw InputError(Where(node), fmt::format("'{}'", role), "a name in the URDF");
-    name = {role, node.Scalar(), Where(node)};
+      faults_.Add({Where(node), fmt::format("'{}'", role), "a name in the URDF"});
+    else
+      name = {role, node.Scalar(), Where(node)};
     return true;
   }
   std::optional<double> Positive(const std::string& key) {
     const YAML::Node node = Find(key);
     if (!node.IsDefined()) return {};
     double value = 0.0;
-    if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value > 0.0) || !std::isfinite(value))
-      throw InputError(Where(node), fmt::format("'{}'", key), "a positive number",
-                       node.IsScalar() ? node.Scalar() : "no single value");
+    if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !(value > 0.0) || !std::isfinite(value)) {
+      faults_.Add({Where(node), fmt::format("'{}'", key), "a positive number",
+                   node.IsScalar() ? node.Scalar() : "no single value"});
+      return 1.0;
+    }
     return value;
   }
-  void RefuseUnknown() const {
+  void RefuseUnknown() {
     for (const auto& entry : map_) {
       const std::string key = entry.first.Scalar();
       if (std::ranges::find(known_, key) == known_.end())
-        throw InputError(Where(entry.first),
-                         fmt::format("unknown key '{}'; did you mean '{}'?", key, NearestName(key, known_)));
+        faults_.Add(
+            {Where(entry.first), fmt::format("unknown key '{}'; did you mean '{}'?", key, NearestName(key, known_))});
     }
   }
 
  private:
   std::string file_;
   YAML::Node map_;
+  FaultList& faults_;
   std::vector<std::string> known_;
 };
 
@@ -75,14 +81,14 @@ YAML::Node Load(const std::string& file) {
   }
 }
 
-void ReadCamera(MapReader& reader, const std::string& camera, RoleName& name) {
+void ReadCamera(MapReader& reader, const std::string& camera, RoleName& name, FaultList& faults) {
   const bool optical = reader.Name(camera + "_optical_frame", name);
   if (reader.Name(camera + "_frame", name) && optical)
-    throw InputError(name.where, fmt::format("'{0}_frame' beside '{0}_optical_frame'", camera), "one of them");
+    faults.Add({name.where, fmt::format("'{0}_frame' beside '{0}_optical_frame'", camera), "one of them"});
 }
 
-Drivetrain ReadDrivetrain(const std::string& file, const YAML::Node& node) {
-  MapReader reader(file, node, "'drivetrain'");
+Drivetrain ReadDrivetrain(const std::string& file, const YAML::Node& node, FaultList& faults) {
+  MapReader reader(file, node, "'drivetrain'", faults);
   const Drivetrain drivetrain = DrivetrainOf(reader.Where(node), "drivetrain", [&](const std::string& name) {
     const std::optional<double> value = reader.Positive(name);
     if (!value) throw InputError(reader.Where(node), fmt::format("drivetrain needs '{}'", name));
@@ -90,6 +96,15 @@ Drivetrain ReadDrivetrain(const std::string& file, const YAML::Node& node) {
   });
   reader.RefuseUnknown();
   return drivetrain;
+}
+
+void ReadRoles(MapReader& reader, CarMapping& mapping, FaultList& faults) {
+  for (RoleName& joint : mapping.wheel_joints) reader.Name(joint.role, joint);
+  for (RoleName& joint : mapping.steer_joints) reader.Name(joint.role, joint);
+  ReadCamera(reader, "depth_camera", mapping.depth_camera, faults);
+  ReadCamera(reader, "color_camera", mapping.color_camera, faults);
+  reader.Name("compass_frame", mapping.compass);
+  reader.Name("pan_joint", mapping.pan_joint);
 }
 
 }  // namespace
@@ -102,18 +117,19 @@ CarMapping ReadMapping(const std::filesystem::path& urdf) {
   CarMapping mapping;
   const std::string file = MappingFile(urdf).string();
   if (!std::filesystem::exists(file)) return mapping;
-  MapReader reader(file, Load(file), "no mapping");
-  for (RoleName& joint : mapping.wheel_joints) reader.Name(joint.role, joint);
-  for (RoleName& joint : mapping.steer_joints) reader.Name(joint.role, joint);
-  ReadCamera(reader, "depth_camera", mapping.depth_camera);
-  ReadCamera(reader, "color_camera", mapping.color_camera);
-  reader.Name("compass_frame", mapping.compass);
-  reader.Name("pan_joint", mapping.pan_joint);
-  mapping.wheel_radius_m = reader.Positive("wheel_radius_m");
-  mapping.wheel_width_m = reader.Positive("wheel_width_m");
-  const YAML::Node drivetrain = reader.Find("drivetrain");
-  reader.RefuseUnknown();
-  if (drivetrain.IsDefined()) mapping.drivetrain = ReadDrivetrain(file, drivetrain);
+  mapping.has_file = true;
+  FaultList faults;
+  faults.Try([&] {
+    MapReader reader(file, Load(file), "no mapping", faults);
+    ReadRoles(reader, mapping, faults);
+    mapping.steering_limit_rad = reader.Positive("steering_limit_rad");
+    mapping.wheel_radius_m = reader.Positive("wheel_radius_m");
+    mapping.wheel_width_m = reader.Positive("wheel_width_m");
+    const YAML::Node drivetrain = reader.Find("drivetrain");
+    reader.RefuseUnknown();
+    if (drivetrain.IsDefined()) mapping.drivetrain = ReadDrivetrain(file, drivetrain, faults);
+  });
+  faults.ThrowIfAny();
   return mapping;
 }
 

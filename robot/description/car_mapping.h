@@ -4,13 +4,15 @@
 //   steer_front_left_joint: kingpin_l       # ... and what steers the two front ones
 //   depth_camera_optical_frame: tof_lens    # a link with z ahead, x right, y down; or
 //   color_camera_frame: webcam              # ... without "optical": x ahead, y left, z up
-//   compass_frame: imu_link
+//   compass_frame: imu_link                 # optional as the colour camera: a car may be without
 //   pan_joint: neck                         # optional: turns both cameras; revolute, upright
+//   steering_limit_rad: 0.5                 # optional: how far a knuckle turns to either side; continuous ones need it
 //   wheel_radius_m: 0.1                     # optional, and wheel_width_m: where the wheels' shapes do not say it
 //   drivetrain: {gear: 10, ...}             # as the element <drivetrain> of models/merlin/merlin.urdf
 //
-// A role that the file leaves out has the name of the rule. A URDF that follows the rule and has a <drivetrain> needs
-// no file.
+// A role that the file leaves out has the name of the rule. Where there is a file, and no link of the rule's name, a
+// colour camera or compass that it leaves out is not there. A URDF that follows the rule and has a <drivetrain> needs no
+// file.
 #pragma once
 
 #include <array>
@@ -30,6 +32,7 @@ struct RoleName {
 };
 
 struct CarMapping {
+  bool has_file = false;
   std::array<RoleName, 4> wheel_joints{{{"wheel_front_left_joint", "wheel_front_left_joint", ""},
                                         {"wheel_front_right_joint", "wheel_front_right_joint", ""},
                                         {"wheel_rear_left_joint", "wheel_rear_left_joint", ""},
@@ -41,14 +44,14 @@ struct CarMapping {
   RoleName color_camera{"color_camera_optical_frame", "color_camera_optical_frame", ""};
   RoleName compass{"compass_frame", "compass_frame", ""};
   RoleName pan_joint{"pan_joint", "pan_joint", ""};  // a car without it has fixed cameras
-  std::optional<double> wheel_radius_m, wheel_width_m;
+  std::optional<double> steering_limit_rad, wheel_radius_m, wheel_width_m;
   std::optional<Drivetrain> drivetrain;
 };
 
 std::filesystem::path MappingFile(const std::filesystem::path& urdf);
 
-// The rule where there is no such file. Throws InputError with file and line: not YAML, a key that is unknown (names
-// the nearest) or given twice, a value that is no name or no positive number.
+// The rule where there is no such file. Throws InputError with file and line of each fault: not YAML, a key that is
+// unknown (names the nearest) or given twice, a value that is no name or no positive number.
 CarMapping ReadMapping(const std::filesystem::path& urdf);
 
 }  // namespace merlin

@@ -3,19 +3,25 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 #include <map>
 #include <memory>
+#include <tuple>
 
 #include "robot/description/car_geometry.h"
 #include "robot/description/car_mapping.h"
 #include "robot/description/description.h"
 #include "robot/description/mesh_file.h"
+#include "robot/description/mesh_path.h"
+#include "robot/description/urdf_check.h"
 #include "robot/description/urdf_source.h"
 #include "robot/types/error.h"
 
 namespace merlin {
 namespace {
+
+constexpr double kInertiaRounding = 1e-4;  // relative, that files with few digits need
+constexpr double kMassMin = 1e-14;         // kg, and kg m2: MuJoCo takes less for nothing
 
 Pose ToPose(const urdf::Pose& pose) {
   const auto& [x, y, z, w] = pose.rotation;
@@ -23,21 +29,6 @@ Pose ToPose(const urdf::Pose& pose) {
   result.linear() = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
   result.translation() = Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
   return result;
-}
-
-// "package://<name>/x" and relative paths stand for x in the URDF's own folder.
-std::filesystem::path MeshPath(const UrdfSource& source, const std::string& link, std::string name) {
-  const std::string package = "package://", file = "file://";
-  if (name.starts_with(package)) {
-    const std::size_t slash = name.find('/', package.size());
-    name = slash == std::string::npos ? "" : name.substr(slash + 1);
-  } else if (name.starts_with(file)) {
-    name = name.substr(file.size());
-  }
-  const std::filesystem::path path = std::filesystem::absolute(source.path).parent_path() / name;
-  if (!std::filesystem::is_regular_file(path))
-    throw InputError(source.Where(link), fmt::format("link '{}': missing mesh", link), "a file " + path.string());
-  return path.lexically_normal();
 }
 
 // All in one plane, to a millionth of its extent.
@@ -52,9 +43,9 @@ bool IsFlat(const CarMesh& mesh) {
   return !(moments[0] > 1e-12 * moments[2]);
 }
 
+// A mesh's scale may be negative along an axis: mirrored.
 CarShape ToShape(const UrdfSource& source, const std::string& link, const urdf::Geometry* geometry,
                  const urdf::Pose& origin) {
-  if (geometry == nullptr) throw InputError(source.Where(link), fmt::format("link '{}': shape without geometry", link));
   CarShape shape;
   shape.T_link_shape = ToPose(origin);
   bool positive = true;
@@ -73,32 +64,43 @@ CarShape ToShape(const UrdfSource& source, const std::string& link, const urdf::
   } else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry)) {
     shape.kind = CarShape::Kind::kMesh;
     shape.size_m = {mesh->scale.x, mesh->scale.y, mesh->scale.z};
-    positive = (shape.size_m.array() > 0.0).all();
-    shape.mesh_file = MeshPath(source, link, mesh->filename);
+    positive = (shape.size_m.array() != 0.0).all();
+    shape.mesh_file = FindMesh(source.path, mesh->filename, source.Where(link), link);
   }
-  if (!positive || !shape.size_m.allFinite())
-    throw InputError(source.Where(link), fmt::format("link '{}': size of a shape", link), "positive numbers",
+  if (!positive)
+    throw InputError(source.Where(link), fmt::format("link '{}': size of a shape", link),
+                     shape.kind == CarShape::Kind::kMesh ? "a scale that is nowhere 0" : "positive numbers",
                      fmt::format("{} {} {}", shape.size_m.x(), shape.size_m.y(), shape.size_m.z()));
   return shape;
 }
 
+// A body's principal moments are positive and none exceeds the sum of the other two. Where they do so by rounding, as
+// those of thin plates, the largest is taken down to that sum: MuJoCo allows for none.
+Eigen::Matrix3d BalancedInertia(const UrdfSource& source, const std::string& link, const Eigen::Matrix3d& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
+  Eigen::Vector3d moments = solver.eigenvalues();
+  const double sum = moments[0] + moments[1];
+  if (!(moments[0] > kMassMin))
+    throw InputError(source.Where(link), fmt::format("link '{}': smallest principal inertia", link),
+                     "a positive number of kg m2", fmt::format("{}", moments[0]));
+  if (moments[2] > sum * (1.0 + kInertiaRounding))
+    throw InputError(source.Where(link), fmt::format("link '{}': largest principal inertia", link),
+                     fmt::format("at most the sum {} of the others", sum), fmt::format("{}", moments[2]));
+  if (moments[2] <= sum) return inertia;
+  moments[2] = sum * (1.0 - 1e-9);
+  return solver.eigenvectors() * moments.asDiagonal() * solver.eigenvectors().transpose();
+}
+
 void ReadInertial(const UrdfSource& source, const urdf::Inertial& inertial, CarLink& link) {
-  const auto fail = [&](const std::string& what, const std::string& expected, double got) {
-    throw InputError(source.Where(link.name), fmt::format("link '{}': {}", link.name, what), expected,
-                     fmt::format("{}", got));
-  };
   link.mass_kg = inertial.mass;
-  if (!(link.mass_kg > 0.0) || !std::isfinite(link.mass_kg)) fail("mass", "a positive number of kg", link.mass_kg);
+  if (!(link.mass_kg > kMassMin))
+    throw InputError(source.Where(link.name), fmt::format("link '{}': mass", link.name), "a positive number of kg",
+                     fmt::format("{}", link.mass_kg));
   link.T_link_inertial = ToPose(inertial.origin);
-  link.inertia_kg_m2 << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz,
-      inertial.ixz, inertial.iyz, inertial.izz;
-  if (!link.inertia_kg_m2.allFinite()) fail("inertia", "finite numbers of kg m2", link.inertia_kg_m2.sum());
-  // A body's principal moments are positive and none exceeds the sum of the other two.
-  const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia_kg_m2).eigenvalues();
-  if (!(moments[0] > 0.0)) fail("smallest principal inertia", "a positive number of kg m2", moments[0]);
-  if (moments[2] > (moments[0] + moments[1]) * (1.0 + 1e-4))
-    fail("largest principal inertia", fmt::format("at most the sum {} of the others", moments[0] + moments[1]),
-         moments[2]);
+  Eigen::Matrix3d inertia;
+  inertia << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz, inertial.ixz,
+      inertial.iyz, inertial.izz;
+  link.inertia_kg_m2 = BalancedInertia(source, link.name, inertia);
 }
 
 void ReadJoint(const UrdfSource& source, const urdf::Joint& joint, CarLink& link) {
@@ -124,8 +126,7 @@ void ReadJoint(const UrdfSource& source, const urdf::Joint& joint, CarLink& link
       link.joint = CarLink::Joint::kPrismatic;
       break;
     default:
-      throw InputError(source.Where(joint.name), fmt::format("joint '{}': type", joint.name),
-                       "fixed, revolute, continuous or prismatic: the car is one piece");
+      assert(false);  // CheckUrdf refuses the others
   }
   link.axis = {joint.axis.x, joint.axis.y, joint.axis.z};
   if (!(link.axis.norm() > 0.0))
@@ -133,18 +134,44 @@ void ReadJoint(const UrdfSource& source, const urdf::Joint& joint, CarLink& link
   link.axis.normalize();
 }
 
-// What is in each mesh file; wheels share theirs.
+// The mesh as its mirror image where an odd number of axes is turned round, with its surfaces still facing out.
+CarMesh Mirrored(CarMesh mesh, const Eigen::Vector3f& signs) {
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex = vertex.cwiseProduct(signs);
+  if (signs.prod() < 0.0f)
+    for (Eigen::Vector3i& corners : mesh.triangles) std::swap(corners[1], corners[2]);
+  return mesh;
+}
+
+// What is in each mesh file, mirrored as a shape wants it; wheels share theirs.
 class MeshFiles {
  public:
-  const std::vector<std::shared_ptr<const CarMesh>>& Parts(const std::filesystem::path& file) {
-    const auto [entry, is_new] = parts_.try_emplace(file);
-    if (is_new)
-      for (CarMesh& part : ReadMesh(file)) entry->second.push_back(std::make_shared<const CarMesh>(std::move(part)));
+  using Parts = std::vector<std::shared_ptr<const CarMesh>>;
+
+  explicit MeshFiles(const FaultList& faults) : faults_(faults) {}
+
+  // Takes the signs out of the shape's scale. Empty once there are faults: no car comes of them.
+  const Parts& Of(CarShape& shape) {
+    static const Parts kNone;
+    if (faults_.count() > 0) return kNone;
+    const Eigen::Vector3d signs = (shape.size_m.array() < 0.0).select(-1.0, Eigen::Vector3d::Ones());
+    shape.size_m = shape.size_m.cwiseAbs();
+    const auto [entry, is_new] = parts_.try_emplace(Key{shape.mesh_file, signs.x(), signs.y(), signs.z()});
+    if (is_new) entry->second = Read(shape.mesh_file, signs.cast<float>());
     return entry->second;
   }
 
  private:
-  std::map<std::filesystem::path, std::vector<std::shared_ptr<const CarMesh>>> parts_;
+  using Key = std::tuple<std::filesystem::path, double, double, double>;
+
+  static Parts Read(const std::filesystem::path& file, const Eigen::Vector3f& signs) {
+    Parts parts;
+    for (CarMesh& part : ReadMesh(file))
+      parts.push_back(std::make_shared<const CarMesh>(Mirrored(std::move(part), signs)));
+    return parts;
+  }
+
+  const FaultList& faults_;
+  std::map<Key, Parts> parts_;
 };
 
 // A mesh of several colours is as many shapes; a material in the URDF paints them all.
@@ -156,7 +183,7 @@ void AddVisual(const UrdfSource& source, const urdf::Visual& visual, MeshFiles& 
     shape.rgba = {color.r, color.g, color.b, color.a};
   }
   if (shape.kind != CarShape::Kind::kMesh) return link.visual.push_back(shape);
-  for (const auto& part : meshes.Parts(shape.mesh_file)) {
+  for (const auto& part : meshes.Of(shape)) {
     if (!visual.material && part->rgba) shape.rgba = *part->rgba;
     shape.mesh = part;
     link.visual.push_back(shape);
@@ -167,7 +194,9 @@ void AddVisual(const UrdfSource& source, const urdf::Visual& visual, MeshFiles& 
 void AddCollision(const UrdfSource& source, const urdf::Collision& collision, MeshFiles& meshes, CarLink& link) {
   CarShape shape = ToShape(source, link.name, collision.geometry.get(), collision.origin);
   if (shape.kind == CarShape::Kind::kMesh) {
-    shape.mesh = std::make_shared<const CarMesh>(Joined(meshes.Parts(shape.mesh_file)));
+    const MeshFiles::Parts& parts = meshes.Of(shape);
+    if (parts.empty()) return;
+    shape.mesh = std::make_shared<const CarMesh>(Joined(parts));
     if (IsFlat(*shape.mesh))
       throw InputError(
           source.Where(link.name),
@@ -177,35 +206,52 @@ void AddCollision(const UrdfSource& source, const urdf::Collision& collision, Me
   link.collision.push_back(shape);
 }
 
-CarLink ToLink(const UrdfSource& source, const urdf::Link& from, MeshFiles& meshes) {
+CarLink ToLink(const UrdfSource& source, const urdf::Link& from, MeshFiles& meshes, UrdfFaults& faults) {
   CarLink link;
   link.name = from.name;
-  if (from.parent_joint) ReadJoint(source, *from.parent_joint, link);
-  if (from.inertial) ReadInertial(source, *from.inertial, link);
-  for (const auto& visual : from.visual_array) AddVisual(source, *visual, meshes, link);
-  for (const auto& collision : from.collision_array) AddCollision(source, *collision, meshes, link);
+  if (from.parent_joint && !faults.parts.contains(from.parent_joint->name))
+    faults.list.Try([&] { ReadJoint(source, *from.parent_joint, link); });
+  if (faults.parts.contains(from.name)) return link;
+  if (from.inertial) faults.list.Try([&] { ReadInertial(source, *from.inertial, link); });
+  for (const auto& visual : from.visual_array) faults.list.Try([&] { AddVisual(source, *visual, meshes, link); });
+  for (const auto& collision : from.collision_array)
+    faults.list.Try([&] { AddCollision(source, *collision, meshes, link); });
   return link;
 }
 
 // Parents before children, siblings in the order of the file.
-void AppendTree(const UrdfSource& source, const urdf::Link& link, MeshFiles& meshes, std::vector<CarLink>& links) {
-  links.push_back(ToLink(source, link, meshes));
+void AppendTree(const UrdfSource& source, const urdf::Link& link, MeshFiles& meshes, UrdfFaults& faults,
+                std::vector<CarLink>& links) {
+  links.push_back(ToLink(source, link, meshes, faults));
   std::vector<urdf::LinkSharedPtr> children = link.child_links;
-  std::stable_sort(children.begin(), children.end(), [&source](const auto& a, const auto& b) {
-    return source.lines.at(a->name) < source.lines.at(b->name);
-  });
-  for (const auto& child : children) AppendTree(source, *child, meshes, links);
+  std::ranges::stable_sort(children, {}, [&source](const auto& child) { return source.Line(child->name); });
+  for (const auto& child : children) AppendTree(source, *child, meshes, faults, links);
+}
+
+// The model, or null where faults say already why there is none.
+urdf::ModelInterfaceSharedPtr ParseUnless(const UrdfFaults& faults, const UrdfSource& source) {
+  try {
+    return ParseUrdf(source);
+  } catch (const InputError&) {
+    if (faults.list.count() == 0) throw;
+    return nullptr;
+  }
 }
 
 }  // namespace
 
 CarDescription ReadCar(const std::filesystem::path& urdf) {
   const UrdfSource source = ReadUrdf(urdf);
-  const urdf::ModelInterfaceSharedPtr model = ParseUrdf(source);
+  UrdfFaults faults;
+  CheckUrdf(source, faults);
   CarDescription car;
-  car.name = model->getName();
-  MeshFiles meshes;
-  AppendTree(source, *model->getRoot(), meshes, car.links);
+  car.file = urdf;
+  if (const urdf::ModelInterfaceSharedPtr model = ParseUnless(faults, source)) {
+    car.name = model->getName();
+    MeshFiles meshes(faults.list);
+    AppendTree(source, *model->getRoot(), meshes, faults, car.links);
+  }
+  faults.list.ThrowIfAny();
   const CarMapping mapping = ReadMapping(urdf);
   DeriveGeometry(source, mapping, car);
   car.drivetrain = mapping.drivetrain ? *mapping.drivetrain : ReadDrivetrain(source);

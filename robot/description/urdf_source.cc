@@ -5,13 +5,12 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <fstream>
 #include <iterator>
-#include <set>
 #include <sstream>
+#include <string_view>
 
+#include "robot/description/urdf_schema.h"
 #include "robot/types/error.h"
 
 namespace merlin {
@@ -28,68 +27,33 @@ class FirstError : public console_bridge::OutputHandler {
   std::string text;
 };
 
-// How many numbers an attribute holds; 0: none of a number.
-std::size_t NumbersIn(const std::string& attribute) {
-  static const std::set<std::string> kOne{"radius", "length", "value", "ixx",   "ixy",    "ixz",     "iyy",
-                                          "iyz",    "izz",    "lower", "upper", "effort", "velocity"};
-  static const std::set<std::string> kThree{"xyz", "rpy", "size", "scale"};
-  return kOne.contains(attribute) ? 1 : kThree.contains(attribute) ? 3 : attribute == "rgba" ? 4 : 0;
-}
-
-bool AreNumbers(const std::string& text, std::size_t expected) {
-  std::istringstream words(text);
-  std::size_t count = 0;
-  for (std::string word; words >> word; ++count) {
-    const char* begin = word.c_str() + (word[0] == '+' ? 1 : 0);
-    double number = 0.0;
-    const auto [rest, error] = std::from_chars(begin, word.c_str() + word.size(), number);
-    if (error != std::errc() || *rest != '\0' || !std::isfinite(number)) return false;
+// Numbers as urdfdom reads them: one blank between two, none before or after. (It takes " 4" for no mass, and drops the
+// rest of the link with it.)
+void TidyNumbers(TiXmlElement& element, const UrdfElement& urdf) {
+  for (const UrdfAttribute& attribute : urdf.attributes) {
+    const char* text = attribute.numbers > 0 ? element.Attribute(attribute.name) : nullptr;
+    if (text == nullptr) continue;
+    std::istringstream words(text);
+    std::string tidy;
+    for (std::string word; words >> word;) tidy += (tidy.empty() ? "" : " ") + word;
+    element.SetAttribute(attribute.name, tidy.c_str());
   }
-  return count == expected;
-}
-
-// urdfdom takes some bad numbers for none, and drops the shape or colour they belong to.
-void RefuseBadNumbers(const UrdfSource& source, const TiXmlElement& element) {
-  for (const TiXmlAttribute* a = element.FirstAttribute(); a != nullptr; a = a->Next())
-    if (const std::size_t count = NumbersIn(a->Name()); count > 0 && !AreNumbers(a->Value(), count))
-      throw InputError(fmt::format("{}:{}", source.path.string(), element.Row()),
-                       fmt::format("<{}> '{}'", element.Value(), a->Name()),
-                       count == 1 ? "a finite number" : fmt::format("{} finite numbers", count),
-                       fmt::format("'{}'", a->Value()));
-  for (const TiXmlElement* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
-    RefuseBadNumbers(source, *e);
-}
-
-std::string LinkOf(const TiXmlElement& joint, const char* end) {
-  const TiXmlElement* element = joint.FirstChildElement(end);
-  const char* name = element == nullptr ? nullptr : element->Attribute("link");
-  return name == nullptr ? "" : name;
-}
-
-void RefuseCycles(const UrdfSource& source) {
-  std::map<std::string, const TiXmlElement*> joint_above;  // by the link that hangs on it
-  const TiXmlElement* robot = source.document.RootElement();
-  const auto where = [&](const TiXmlElement& e) { return fmt::format("{}:{}", source.path.string(), e.Row()); };
-  for (const TiXmlElement* joint = robot->FirstChildElement("joint"); joint;
-       joint = joint->NextSiblingElement("joint")) {
-    const std::string child = LinkOf(*joint, "child");
-    if (!child.empty() && !joint_above.emplace(child, joint).second)
-      throw InputError(where(*joint), fmt::format("link '{}' already hangs on another joint", child));
-  }
-  for (const auto& [link, joint] : joint_above) {
-    std::string above = LinkOf(*joint, "parent");
-    for (std::size_t steps = 0; joint_above.contains(above) && above != link && steps <= joint_above.size(); ++steps)
-      above = LinkOf(*joint_above.at(above), "parent");
-    if (above == link)
-      throw InputError(where(*joint), fmt::format("link '{}' hangs below itself", link), "a tree of links");
-  }
+  const auto& children = std::string_view(urdf.name) == "geometry" ? UrdfShapes() : urdf.children;
+  for (TiXmlElement* e = element.FirstChildElement(); e != nullptr; e = e->NextSiblingElement())
+    for (const UrdfElement& child : children)
+      if (e->ValueStr() == child.name) TidyNumbers(*e, child);
 }
 
 }  // namespace
 
 std::string UrdfSource::Where(const std::string& name) const {
+  const int line = Line(name);
+  return line == 0 ? path.string() : fmt::format("{}:{}", path.string(), line);
+}
+
+int UrdfSource::Line(const std::string& name) const {
   const auto line = lines.find(name);
-  return line == lines.end() ? path.string() : fmt::format("{}:{}", path.string(), line->second);
+  return line == lines.end() ? 0 : line->second;
 }
 
 UrdfSource ReadUrdf(const std::filesystem::path& path) {
@@ -97,8 +61,8 @@ UrdfSource ReadUrdf(const std::filesystem::path& path) {
   source.path = path;
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path)) throw InputError(path.string(), "cannot be read", "a URDF file");
-  source.text.assign(std::istreambuf_iterator<char>(file), {});
-  source.document.Parse(source.text.c_str());
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  source.document.Parse(text.c_str());
   const TiXmlElement* robot = source.document.RootElement();
   if (source.document.Error())
     throw InputError(fmt::format("{}:{}", path.string(), std::max(1, source.document.ErrorRow())),
@@ -111,14 +75,14 @@ UrdfSource ReadUrdf(const std::filesystem::path& path) {
 }
 
 urdf::ModelInterfaceSharedPtr ParseUrdf(const UrdfSource& source) {
-  for (const TiXmlElement* e = source.document.RootElement()->FirstChildElement(); e; e = e->NextSiblingElement())
-    if (e->ValueStr() == "link" || e->ValueStr() == "joint" || e->ValueStr() == "material")
-      RefuseBadNumbers(source, *e);
-  RefuseCycles(source);
+  TiXmlDocument tidy = source.document;
+  TidyNumbers(*tidy.RootElement(), UrdfRobot());
+  TiXmlPrinter printer;
+  tidy.Accept(&printer);
   FirstError error;
   urdf::ModelInterfaceSharedPtr model;
   try {
-    model = urdf::parseURDF(source.text);
+    model = urdf::parseURDF(printer.Str());
   } catch (const std::exception& e) {
     error.text = e.what();
   }

@@ -13,19 +13,19 @@ namespace merlin {
 
 struct UrdfSource {
   std::filesystem::path path;
-  std::string text;
   TiXmlDocument document;
   std::map<std::string, int> lines;  // of <link name="..."> and <joint name="...">
 
   // "file:line" of a link or joint, "file" if there is none of that name.
   std::string Where(const std::string& name) const;
+  int Line(const std::string& name) const;  // 0: there is none
 };
 
 // Throws InputError: not readable, not well-formed XML (with its line), no <robot>.
 UrdfSource ReadUrdf(const std::filesystem::path& path);
 
-// The model as urdfdom understands it. Throws InputError with urdfdom's reason, and for what it lets pass: numbers that
-// are none, links in a cycle, which it drops, and a link that hangs on two joints. Prints nothing.
+// The model as urdfdom understands it. Throws InputError with urdfdom's reason; what urdfdom drops without one is found
+// by CheckUrdf (robot/description/urdf_check.h). Prints nothing.
 urdf::ModelInterfaceSharedPtr ParseUrdf(const UrdfSource& source);
 
 }  // namespace merlin

@@ -88,7 +88,7 @@ class TwinDepth final : public DepthCamera {
 class TwinColor final : public ColorCamera {
  public:
   TwinColor(const TwinOptions& options, const sim::World& world, Worker& worker)
-      : info_{options.color->sheet, options.world.car.T_base_color, options.color->rate_hz},
+      : info_{options.color->sheet, options.world.car.T_base_color.value(), options.color->rate_hz},
         worker_(worker),
         schedule_(options.color->rate_hz),
         outbox_(FromSeconds(options.color->sheet.latency_s)) {

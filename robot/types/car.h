@@ -88,12 +88,14 @@ struct CarPan {
 // move.
 struct CarDescription {
   std::string name;
+  std::filesystem::path file;         // its URDF; empty: made in code
+  std::vector<std::string> warnings;  // one sentence each, of what its user should know
   std::vector<CarLink> links;  // parents before children; [0] is the base: on the ground below the rear axle's middle
   std::array<CarWheel, 4> wheels{};        // front left, front right, rear left, rear right
   std::array<std::size_t, 2> knuckles{};   // places in links: what steers the front wheels, left, right; positive to the left
   std::optional<CarPan> pan;               // none: the cameras are fixed
   // Derived from the links, so that they cannot disagree with them:
-  double wheelbase_m = 0.0;
+  double wheelbase_m = 0.0;       // means of left and right; the links stand as they are drawn
   double track_m = 0.0;           // between the wheels' middles, mean of front and rear
   double steering_track_m = 0.0;  // between the two steering axes; they may stand beside the wheels' middles
   double wheel_radius_m = 0.0;
@@ -101,8 +103,8 @@ struct CarDescription {
   double steering_offset_rad = 0.0;  // of the wheels from what the servo reports; only a calibration knows it
   Drivetrain drivetrain;
   Pose T_base_depth = Pose::Identity();  // optical frames, looking ahead
-  Pose T_base_color = Pose::Identity();
-  Pose T_base_compass = Pose::Identity();
+  std::optional<Pose> T_base_color;      // none: the car has no colour camera
+  std::optional<Pose> T_base_compass;    // none: it has no compass
 
   // Of a turntable the car stands on: through the base's origin, so that a turn moves no true pose from its place. (On a
   // small circle the judge would take the noise of the path for a turn of the map.)

@@ -1,5 +1,6 @@
 #include "robot/types/footprint.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -13,6 +14,13 @@ struct Extent {
   Eigen::Vector3d reach{0, 0, 0};  // to either side
 };
 
+Extent MeshExtent(const CarShape& shape, const Pose& T_base_shape) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : shape.mesh->vertices)
+    box.extend(T_base_shape * shape.size_m.cwiseProduct(vertex.cast<double>()));
+  return {box.center(), 0.5 * box.sizes()};
+}
+
 std::vector<Extent> ExtentsOf(const CarDescription& car) {
   std::vector<Extent> extents;
   std::map<std::string, Pose> T_base_link;
@@ -21,7 +29,10 @@ std::vector<Extent> ExtentsOf(const CarDescription& car) {
     const Pose T = parent == T_base_link.end() ? Pose::Identity() : parent->second * link.T_parent_link;
     T_base_link[link.name] = T;
     for (const CarShape& shape : link.collision) {
-      if (shape.kind == CarShape::Kind::kMesh) continue;
+      if (shape.kind == CarShape::Kind::kMesh) {
+        extents.push_back(MeshExtent(shape, T * shape.T_link_shape));
+        continue;
+      }
       Eigen::Vector3d half = 0.5 * shape.size_m;
       if (shape.kind == CarShape::Kind::kSphere) half.setConstant(shape.size_m.x());
       if (shape.kind == CarShape::Kind::kCylinder) half = {shape.size_m.x(), shape.size_m.x(), 0.5 * shape.size_m.y()};

@@ -5,7 +5,7 @@
 
 namespace merlin {
 
-// What of the car touches first, from base_link, over its collision shapes (boxes, cylinders, spheres; meshes are left out).
+// What of the car touches first, from base_link, over its collision shapes.
 struct Footprint {
   double front_m = 0.0;
   double half_width_m = 0.0;

@@ -74,9 +74,9 @@ TEST(CarMapping, ReadsARoverThatNamesEverythingOtherwise) {
   const Eigen::Vector3d tof_base(0.52, 0.01, 0.35);
   EXPECT_LT((car.T_base_depth.translation() - tof_base).norm(), 1e-6);
   EXPECT_LT((car.T_base_depth.linear() - tof * Optical()).norm(), 1e-6);
-  EXPECT_LT((car.T_base_color.translation() - (tof_base + tof * Eigen::Vector3d(-0.02, 0, 0.06))).norm(), 1e-6);
-  EXPECT_LT((car.T_base_color.linear() - tof * Optical()).norm(), 1e-6);
-  EXPECT_LT((car.T_base_compass.translation() - Eigen::Vector3d(0.2, 0, 0.25)).norm(), 1e-6);
+  EXPECT_LT((car.T_base_color->translation() - (tof_base + tof * Eigen::Vector3d(-0.02, 0, 0.06))).norm(), 1e-6);
+  EXPECT_LT((car.T_base_color->linear() - tof * Optical()).norm(), 1e-6);
+  EXPECT_LT((car.T_base_compass->translation() - Eigen::Vector3d(0.2, 0, 0.25)).norm(), 1e-6);
 }
 
 TEST(CarMapping, ReadsABuggyWhoseRootLooksAlongY) {
@@ -97,7 +97,7 @@ TEST(CarMapping, ReadsABuggyWhoseRootLooksAlongY) {
   EXPECT_NEAR(1.0 / std::tan(car.steering_max_rad), 1.0 / std::tan(0.4) + 0.20 / (2.0 * 0.26), 1e-6);
   EXPECT_LT((car.T_base_depth.translation() - Eigen::Vector3d(0.28, -0.01, 0.16)).norm(), 1e-6);
   EXPECT_LT((car.T_base_depth.linear() - Optical()).norm(), 1e-6);
-  EXPECT_LT((car.T_base_compass.linear() - Eigen::Matrix3d::Identity()).norm(), 1e-6);
+  EXPECT_LT((car.T_base_compass->linear() - Eigen::Matrix3d::Identity()).norm(), 1e-6);
 }
 
 TEST(CarMapping, NamesAnUnknownKeyAndItsNearest) {

@@ -167,24 +167,24 @@ TEST_F(Description, DepthCameraLooksAheadLevel) {
 // Table 4.5 of the thesis, read as q_CCD = R q_PMD + t.
 TEST_F(Description, ColourCameraStandsWhereTable45Says) {
   const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
-  const Pose T_ccd_pmd = car.T_base_color.inverse() * car.T_base_depth;
+  const Pose T_ccd_pmd = car.T_base_color->inverse() * car.T_base_depth;
   const Eigen::Vector3d rotation_vector(0.05058, 0.07940, -0.01120), translation_mm(14.31872, 63.96501, 70.83500);
   EXPECT_LT((T_ccd_pmd.translation() * 1e3 - translation_mm).norm(), 1e-6);
   EXPECT_LT((LogSo3(T_ccd_pmd.linear()) - rotation_vector).norm(), 1e-9);
   // Above the depth camera and behind it, both looking ahead.
-  const Eigen::Vector3d offset_base = car.T_base_color.translation() - car.T_base_depth.translation();
+  const Eigen::Vector3d offset_base = car.T_base_color->translation() - car.T_base_depth.translation();
   EXPECT_NEAR(offset_base.z(), 0.064, 0.004);
   EXPECT_NEAR(offset_base.x(), -0.071, 0.004);
-  EXPECT_GT(car.T_base_color.linear()(0, 2), 0.99);
+  EXPECT_GT(car.T_base_color->linear()(0, 2), 0.99);
 }
 
 TEST_F(Description, CompassStandsOnItsMastInTheBodysAxes) {
   const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
-  EXPECT_EQ(car.T_base_compass.linear(), Eigen::Matrix3d::Identity());
+  EXPECT_EQ(car.T_base_compass->linear(), Eigen::Matrix3d::Identity());
   const CarLink& mast = Link(car, "compass_mast");
   EXPECT_NEAR(mast.collision[0].size_m.y(), 0.20, 1e-12);
   const double top_m = mast.T_parent_link.translation().z() + mast.collision[0].T_link_shape.translation().z() + 0.10;
-  EXPECT_NEAR(car.T_base_compass.translation().z(), top_m, 0.02);
+  EXPECT_NEAR(car.T_base_compass->translation().z(), top_m, 0.02);
 }
 
 TEST_F(Description, CarOutlineIsAsStated) {
@@ -220,7 +220,7 @@ TEST_F(Description, FindsTheJointThatTurnsTheCameras) {
   const Pose left = car.pan->Turned(car.T_base_depth, std::numbers::pi / 2.0);
   EXPECT_LT((left.translation() - Eigen::Vector3d(0.245, 0.055, 0.35)).norm(), 1e-12);
   EXPECT_LT((left.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
-  EXPECT_LT((car.pan->Turned(car.T_base_color, 0.0).matrix() - car.T_base_color.matrix()).norm(), 1e-12);
+  EXPECT_LT((car.pan->Turned(*car.T_base_color, 0.0).matrix() - car.T_base_color->matrix()).norm(), 1e-12);
 }
 
 TEST_F(Description, RefusesAJointThatCannotTurnTheCameras) {

@@ -23,5 +23,20 @@ TEST(Footprint, ReachesToTheFarthestCollisionShapeInTheBaseFrame) {
   EXPECT_NEAR(FootprintOf(car).height_m, 0.15, 1e-12);
 }
 
+TEST(Footprint, ReachesOverMeshesToo) {
+  CarDescription car;
+  car.links.resize(1);
+  car.links[0].name = "base_link";
+  CarShape shape;
+  shape.kind = CarShape::Kind::kMesh;
+  shape.size_m = {0.1, 0.1, 0.1};
+  shape.mesh = std::make_shared<CarMesh>(CarMesh{.vertices = {{-1, -2, 0}, {3, -2, 0}, {3, 1, 4}}, .triangles = {{0, 1, 2}}, .rgba = {}});
+  shape.T_link_shape.translation() = Eigen::Vector3d(0.2, 0.0, 0.1);
+  car.links[0].collision.push_back(shape);
+  EXPECT_NEAR(FootprintOf(car).front_m, 0.5, 1e-7);
+  EXPECT_NEAR(FootprintOf(car).half_width_m, 0.2, 1e-7);
+  EXPECT_NEAR(FootprintOf(car).height_m, 0.5, 1e-7);
+}
+
 }  // namespace
 }  // namespace merlin

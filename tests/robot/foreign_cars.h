@@ -23,9 +23,11 @@ class ForeignCar {
   ForeignCar(const ForeignCar&) = delete;
   ForeignCar& operator=(const ForeignCar&) = delete;
   void Write(const std::string& name, const std::string& bytes) const {
+    std::filesystem::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
   }
   std::filesystem::path urdf() const { return folder_ / "car.urdf"; }
+  const std::filesystem::path& folder() const { return folder_; }
 
  private:
   std::filesystem::path folder_;

@@ -91,7 +91,7 @@ TEST_P(AnyCar, SeesWithItsCamerasAtTheirPlaces) {
   const auto world =
       Place(std::string(kPlane) + R"(<geom name="wall" type="box" pos="2.1 0 1" size="0.1 4 1"/>)", T_world_start);
   constexpr mjtByte kSeenGroups[mjNGROUP] = {1, 0, 0, 0, 0, 0};  // the room's, not the car's own
-  for (const Pose& T_base_camera : {car_.T_base_depth, car_.T_base_color}) {
+  for (const Pose& T_base_camera : {car_.T_base_depth, car_.T_base_color.value()}) {
     const Pose T_world_camera = world->T_world_base() * T_base_camera;
     const Eigen::Vector3d eye = T_world_camera.translation(), ahead = T_world_camera.linear().col(2);
     int geom = -1;
@@ -103,6 +103,17 @@ TEST_P(AnyCar, SeesWithItsCamerasAtTheirPlaces) {
   }
   for (const CarLink& link : car_.links)
     EXPECT_GE(mj_name2id(world->model(), mjOBJ_BODY, link.name.c_str()), 0) << link.name;
+}
+
+// What MuJoCo refuses of the car is the car's fault, not the room's.
+TEST_P(AnyCar, IsBlamedForWhatDoesNotCompile) {
+  for (CarLink& link : car_.links) link.mass_kg = 0.0;
+  try {
+    Place(kPlane);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with(car_.file.string() + ": the car does not compile")) << error.what();
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Foreign, AnyCar, testing::Values(Foreign{"rover", WriteRover}, Foreign{"buggy", WriteBuggy}),

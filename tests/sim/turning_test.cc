@@ -44,9 +44,9 @@ TEST(PanServo, MovesACameraAsFiniteDifferencesSay) {
   StepFor(world, 0.5);
   world.pan()->Send(1.2);
   StepFor(world, 0.2);  // in full swing
-  const BodyMotion before = world.CameraMotion(Merlin().T_base_color);
+  const BodyMotion before = world.CameraMotion(*Merlin().T_base_color);
   world.Step();
-  const BodyMotion after = world.CameraMotion(Merlin().T_base_color);
+  const BodyMotion after = world.CameraMotion(*Merlin().T_base_color);
   const double step_s = Seconds(World::kStep);
   const Eigen::Vector3d velocity = (after.T_world_body.translation() - before.T_world_body.translation()) / step_s;
   EXPECT_LT((velocity - 0.5 * (before.velocity_m_s + after.velocity_m_s)).norm(), 0.01);

@@ -142,7 +142,7 @@ TEST(World, OpticalFramesStandWhereTheDescriptionSays) {
   const Pose T_world_start = FromXyYaw(1.0, 2.0, 0.7);
   const auto world = MakeWorld(Room(kPlane), T_world_start);
   const int body = mj_name2id(world->model(), mjOBJ_BODY, "color_camera_optical_frame");
-  const Pose expected = T_world_start * car.T_base_color;
+  const Pose expected = T_world_start * *car.T_base_color;
   EXPECT_LT((Eigen::Vector3d::Map(world->data()->xpos + 3 * body) - expected.translation()).norm(), 1e-9);
   const Eigen::Matrix3d rotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>::Map(world->data()->xmat + 9 * body);
   EXPECT_LT((rotation - expected.linear()).norm(), 1e-9);

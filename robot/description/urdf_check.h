@@ -1,0 +1,29 @@
+// What urdfdom lets pass or drops without a word, found in the URDF's XML itself.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "robot/description/fault_list.h"
+#include "robot/description/urdf_source.h"
+
+namespace merlin {
+
+struct UrdfFaults {
+  FaultList list;
+  std::set<std::string> parts;  // names of the links and joints that have one: what urdfdom makes of them is no news
+};
+
+// Adds a fault, with its line and the link or joint, for
+// - each shape that would vanish: one that URDF does not know (capsule, ellipsoid, ...), an empty <geometry> or none, a
+//   second shape in one, a shape outside a link;
+// - attributes that are missing or no numbers, <mass> or <inertia> that is missing, a <material> without a name:
+//   urdfdom drops the rest of the link with them;
+// - joints of a type that a car cannot have, without limits, or between links that are not there;
+// - names that are missing or given twice, links in a cycle, on two joints or on none;
+// - left-overs of xacro: <xacro:...>, ${...}, $(...) other than $(find ...) in a mesh's file name.
+// Elements that URDF does not define are ignored with all that is in them. A file that is xacro as a whole has that one
+// fault. (urdfdom: a fault in a shape ends the reading of its link, its return value is not asked for.)
+void CheckUrdf(const UrdfSource& source, UrdfFaults& faults);
+
+}  // namespace merlin
