@@ -22,6 +22,10 @@ endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(merlin_options INTERFACE -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds)
 endif()
+# Of a file that a unity build includes, GCC takes the unnamed namespace for one of a header.
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(merlin_options INTERFACE -Wno-subobject-linkage)
+endif()
 # Under MERLIN_SANITIZE every source is compiled with its sanitizer, and programs are linked with both. With "address" the
 # undefined-behaviour sanitizer comes in where a library is not NUMERIC: of Eigen's templates it makes half as much work
 # again for the compiler. "address,undefined" has both everywhere.
