@@ -16,8 +16,8 @@ constexpr std::string_view WithoutByteOrderMark(std::string_view text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
-// Calls each(line, number) for every line of a text, numbers from 1 on; neither "\n" nor "\r\n" belongs to the line, nor
-// a byte-order mark to the first.
+// Calls each(line, number) for every line of a text, numbers from 1 on; neither "\n" nor "\r\n" belongs to the line,
+// nor a byte-order mark to the first.
 template <class Each>
 void ForEachLine(std::string_view text, Each each) {
   text = WithoutByteOrderMark(text);

@@ -37,7 +37,8 @@ std::vector<Match> Matches(const Trajectory& shorter, const Trajectory& longer, 
     const double gap_below_s = above == longer.begin() ? HUGE_VAL : stamp_s - Seconds((above - 1)->stamp);
     const bool take_above = gap_above_s <= most_s && gap_above_s < gap_below_s;
     if (!take_above && gap_below_s > most_s) continue;
-    matches.push_back({.shorter = i, .longer = static_cast<std::size_t>(above - longer.begin()) - (take_above ? 0 : 1)});
+    if (!take_above) --above;
+    matches.push_back({.shorter = i, .longer = static_cast<std::size_t>(above - longer.begin())});
   }
   return matches;
 }
@@ -77,7 +78,8 @@ TumFile ParseTum(std::string_view text, const std::string& name) {
   faults.ThrowIfAny();
   if (file.trajectory.empty()) throw InputError(name, "no poses", "lines 'stamp x y z qx qy qz qw'");
   Warn(file, name, off_unit, "quaternion", "quaternions", "off unit length, normalised");
-  Warn(file, name, again, "stamp is", "stamps are", "that of the pose above; all its poses are taken, and paired as evo does");
+  Warn(file, name, again, "stamp is", "stamps are",
+       "that of the pose above; all its poses are taken, and paired as evo does");
   return file;
 }
 

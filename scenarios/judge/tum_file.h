@@ -16,9 +16,9 @@ struct TumFile {
   std::vector<std::string> warnings{};  // quaternions off unit length, which are normalised; equal stamps
 };
 
-// Reads the whole text; name: the file's, for the errors. Throws InputError with every fault, each with name and line: a
-// field that is missing, too much, no number or beyond 1e9, a quaternion of no length, a stamp that comes before the one
-// above it; and for a text without poses.
+// Reads the whole text; name: the file's, for the errors. Throws InputError with every fault, each with name and line:
+// a field that is missing, too much, no number or beyond 1e9, a quaternion of no length, a stamp that comes before the
+// one above it; and for a text without poses.
 TumFile ParseTum(std::string_view text, const std::string& name);
 
 // Pairs as evo does: each pose of the trajectory that has fewer (of the estimate, where both have as many) with the

@@ -203,7 +203,8 @@ class Reader {
     if (parts.size() == 1) return;
     const auto single = std::ranges::count_if(parts, [](const GraphPart& part) { return part.poses.size() == 1; });
     file_.warnings.push_back(
-        fmt::format("{}: the graph has {} parts that no edge joins; each is solved by itself, about its FIX or its first pose{}",
+        fmt::format("{}: the graph has {} parts that no edge joins; each is solved by itself, about its FIX or its first "
+                    "pose{}",
                     name_, parts.size(), single > 0 ? fmt::format(" ({} of one pose, which stays)", single) : ""));
   }
 

@@ -1,5 +1,5 @@
-// What every reader of a cloud keeps: a file is refused, each fault in one sentence, or taken whole, and never more of it
-// than is there.
+// What every reader of a cloud keeps: a file is refused, each fault in one sentence, or taken whole, and never more of
+// it than is there.
 #pragma once
 
 #include <string>

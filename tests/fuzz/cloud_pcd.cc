@@ -14,7 +14,8 @@ std::vector<Bytes> fuzz::Seeds() {
                            // four bytes as they are, six from four back, fourteen from ten back
                            ToBytes(fields + points + "DATA binary_compressed\n" +
                                    std::string("\x0a\0\0\0\x18\0\0\0\x03zzzz\x80\x03\xe0\x05\x09", 18))};
-  for (const char* word : {"WIDTH ", "COUNT ", "DATA binary\n", "DATA binary_compressed\n", "F", "8", "18446744073709551615"})
+  for (const char* word :
+       {"WIDTH ", "COUNT ", "DATA binary\n", "DATA binary_compressed\n", "F", "8", "18446744073709551615"})
     seeds.push_back(ToBytes(word));
   AddWords(seeds);
   return seeds;

@@ -24,7 +24,8 @@ inline void AddWords(std::vector<Bytes>& seeds) {
     seeds.push_back(ToBytes(word));
 }
 
-// The reader's answer; none where it refuses, which it does in a line a fault, each of which begins with the file's name.
+// The reader's answer; none where it refuses, which it does in a line a fault, each of which begins with the file's
+// name.
 template <class Parse>
 auto TakenOrRefused(Parse parse, std::string_view text) -> std::optional<decltype(parse(text, std::string()))> {
   try {

@@ -146,8 +146,9 @@ TEST(EvalCli, RefusesBadInputWithOneSentence) {
   ExpectRefused("eval back.tum truth.tum", "back.tum:2: the stamp", folder);
   ExpectRefused("eval truth.tum two.tum", "two.tum: too few pairs for a figure; expected 3 or more", folder);
   for (const char* align : {"none", "se3", "sim3"}) {
-    ExpectRefused("eval truth.tum stands.tum --align " + std::string(align), "stands.tum: the positions of all 3", folder);
-    ExpectRefused("eval stands.tum truth.tum --align " + std::string(align), "stands.tum: the positions of all 3", folder);
+    const std::string option = std::string(" --align ") + align, part = "stands.tum: the positions of all 3 pairs";
+    ExpectRefused("eval truth.tum stands.tum" + option, part, folder);
+    ExpectRefused("eval stands.tum truth.tum" + option, part, folder);
   }
   ExpectRefused("eval truth.tum estimate.tum --align so3", "--align", folder);
   for (const char* number : {"nan", "0", "-1", "inf", "x", "''"})

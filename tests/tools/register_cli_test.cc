@@ -94,8 +94,10 @@ TEST(RegisterCli, KeepsATenthOfAMillimetreFarFromTheOrigin) {
   EXPECT_EQ(header, "x,y,z");
   int points = 0;
   char comma = 0;
-  for (Eigen::Vector4d p(0, 0, 0, 1), a(0, 0, 0, 1);
-       source >> p(0) >> comma >> p(1) >> comma >> p(2) && aligned >> a(0) >> comma >> a(1) >> comma >> a(2); ++points) {
+  const auto read = [&comma](std::ifstream& in, Eigen::Vector4d& p) {
+    return static_cast<bool>(in >> p(0) >> comma >> p(1) >> comma >> p(2));
+  };
+  for (Eigen::Vector4d p(0, 0, 0, 1), a(0, 0, 0, 1); read(source, p) && read(aligned, a); ++points) {
     ASSERT_LT((of_json * p - a).norm(), 1e-4);
     ASSERT_LT((of_text * p - a).norm(), 1e-4);
   }

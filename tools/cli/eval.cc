@@ -54,7 +54,8 @@ bool InOnePlace(const std::vector<PosePair>& pairs, Pose PosePair::* side) {
 void CheckPairs(const Arguments& arguments, const std::vector<PosePair>& pairs) {
   if (pairs.size() < 3)
     throw InputError(arguments.estimate, "too few pairs for a figure",
-                     fmt::format("3 or more stamps within {} s of one of {}", arguments.max_difference_s, arguments.truth),
+                     fmt::format("3 or more stamps within {} s of one of {}", arguments.max_difference_s,
+                                 arguments.truth),
                      fmt::format("{}", pairs.size()));
   for (const auto& [file, side] : {std::pair{arguments.truth, &PosePair::T_world_base},
                                    std::pair{arguments.estimate, &PosePair::T_map_base}})

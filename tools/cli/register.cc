@@ -193,7 +193,9 @@ void AddRegister(CLI::App& app, int& exit_code) {
   const auto a = std::make_shared<Arguments>();
   CLI::App* reg =
       app.add_subcommand("register", "aligns two clouds: finds T_target_source, p_target = T_target_source * p_source");
-  reg->add_option("source", a->source, "PLY, PCD, or text (.csv, .txt, .xyz, .asc, .pts: x y z, with or without a header), in metres")->required();
+  reg->add_option("source", a->source,
+                  "PLY, PCD, or text (.csv, .txt, .xyz, .asc, .pts: x y z, with or without a header), in metres")
+      ->required();
   reg->add_option("target", a->target, "likewise; stays where it is")->required();
   reg->add_option("--method", a->method, "how a pair is measured; default gicp where there are surfaces, else point")
       ->check(CLI::IsMember({"point", "plane", "gicp"}));
@@ -202,7 +204,8 @@ void AddRegister(CLI::App& app, int& exit_code) {
   reg->add_option("--guess", a->guess,
                   "T_target_source: x,y,z,roll,pitch,yaw (m, rad), or 16 numbers row by row; default none");
   reg->add_option("--voxel", a->voxel_m, "M: first thins both to one point a cube of this edge");
-  reg->add_option("--out", a->out, "the source in the target's frame, also where it did not converge: PLY, or PCD or CSV by its name");
+  reg->add_option("--out", a->out,
+                  "PLY (PCD, CSV by its name): the source in the target's frame, also where it did not converge");
   reg->add_flag("--json", a->json, "for machines");
   reg->footer("exit code: 0 converged, 1 not (few pairs, or a direction that the clouds do not hold), 2 bad input");
   reg->callback([a, &exit_code] { exit_code = Register(*a); });

@@ -1,5 +1,5 @@
-// Clouds from files: PLY (ascii, binary of either byte order), PCD (ascii, binary, binary_compressed) and columns of text
-// (.csv, .txt, .xyz, .asc, .pts).
+// Clouds from files: PLY (ascii, binary of either byte order), PCD (ascii, binary, binary_compressed) and columns of
+// text (.csv, .txt, .xyz, .asc, .pts).
 #pragma once
 
 #include <array>
@@ -28,12 +28,13 @@ CloudFile ReadCloud(const std::filesystem::path& file);
 // PLY (G. Turk, 1994): x, y, z and colours of the element vertex; other properties, lists and elements are read over.
 // Bytes behind binary data are left, with a warning.
 CloudFile ParsePly(std::string_view bytes, const std::string& name);
-// PCD 0.7 (pointclouds.org): the fields x, y, z; bytes behind binary data as above. The viewpoint does not move the points.
+// PCD 0.7 (pointclouds.org): the fields x, y, z; bytes behind binary data as above. The viewpoint does not move the
+// points.
 CloudFile ParsePcd(std::string_view bytes, const std::string& name);
-// Columns between commas, semicolons, tabs or blanks. A header of names (columns.h), perhaps behind # or //, or none: then
-// the first three are x, y, z. Columns that are not used may hold any text, or nothing. A line of one whole number before
-// the points is their count. Decimal commas are read where commas separate nothing, with a warning. Other lines that begin
-// with #, // or % are remarks.
+// Columns between commas, semicolons, tabs or blanks. A header of names (columns.h), perhaps behind # or //, or none:
+// then the first three are x, y, z. Columns that are not used may hold any text, or nothing. A line of one whole number
+// before the points is their count. Decimal commas are read where commas separate nothing, with a warning. Other lines
+// that begin with #, // or % are remarks.
 CloudFile ParseCsv(std::string_view bytes, const std::string& name);
 
 }  // namespace merlin

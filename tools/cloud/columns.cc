@@ -83,7 +83,9 @@ void Columns::Add(std::span<const double> row, CloudFile& file) {
   file.cloud.positions.push_back(position);
   if (sigma_m_) file.cloud.sigma_m.push_back(sigma_m);
   if (!colour()) return;
-  const auto level = [&row](std::size_t column) { return row[column] >= 0.0 ? static_cast<float>(std::min(row[column], 1e9)) : 0.0f; };
+  const auto level = [&row](std::size_t column) {
+    return row[column] >= 0.0 ? static_cast<float>(std::min(row[column], 1e9)) : 0.0f;
+  };
   levels_.push_back({level(*red_), level(*green_), level(*blue_)});
 }
 
@@ -96,7 +98,9 @@ void Columns::GiveColours(CloudFile& file, std::optional<bool> whole) {
       fractions = fractions || (!whole && level != std::floor(level));
     }
   constexpr float kRounding = 1e-3f;
-  const float full = fractions && most <= 1.0f + kRounding ? 1.0f : most > 255.0f && most <= 65535.0f ? 65535.0f : 255.0f;
+  float full = 255.0f;
+  if (fractions && most <= 1.0f + kRounding) full = 1.0f;
+  if (most > 255.0f && most <= 65535.0f) full = 65535.0f;
   file.rgb.reserve(levels_.size());
   for (const auto& levels : levels_) {
     auto& rgb = file.rgb.emplace_back();

@@ -17,9 +17,9 @@ bool HaveCoordinates(std::span<const std::string_view> names);
 
 class Columns {
  public:
-  // The file's columns by name, in any case, with or without their unit, in their order. Coordinates: x, y, z; Points:0 ...
-  // (ParaView); Easting, Northing, Elevation. Colours: red, green, blue; r, g, b; diffuse_red ... Throws InputError at
-  // `where` without coordinates, or with one of the names we know given twice.
+  // The file's columns by name, in any case, with or without their unit, in their order. Coordinates: x, y, z; Points:0
+  // ... (ParaView); Easting, Northing, Elevation. Colours: red, green, blue; r, g, b; diffuse_red ... Throws InputError
+  // at `where` without coordinates, or with one of the names we know given twice.
   Columns(std::span<const std::string_view> names, const std::string& where);
 
   // Whether a point's value in that column counts; the others may hold anything.
@@ -30,8 +30,9 @@ class Columns {
   // One value a column.
   void Add(std::span<const double> row, CloudFile& file);
 
-  // To be called last: gives the points their colours. Fractions up to 1 are shares of 255, numbers beyond 255 of 65535,
-  // others are [0, 255] as they are. whole: whether they are whole numbers by their type; unknown: by their values.
+  // To be called last: gives the points their colours. Fractions up to 1 are shares of 255, numbers beyond 255 of
+  // 65535, others are [0, 255] as they are. whole: whether they are whole numbers by their type; unknown: by their
+  // values.
   void GiveColours(CloudFile& file, std::optional<bool> whole);
 
  private:

@@ -24,16 +24,15 @@ void Split(char separator, std::string_view line, std::vector<std::string_view>&
 // "1,5": a number to whom a comma is what the point is to others.
 std::optional<double> ToNumberWithComma(std::string_view text) {
   const std::size_t comma = text.find(',');
-  if (comma == std::string_view::npos || comma + 1 == text.size() || !std::isdigit(static_cast<unsigned char>(text[comma + 1])))
-    return std::nullopt;
+  if (comma == std::string_view::npos || text.find('.') != std::string_view::npos) return std::nullopt;
+  if (comma + 1 == text.size() || !std::isdigit(static_cast<unsigned char>(text[comma + 1]))) return std::nullopt;
   std::string with_point(text);
-  if (with_point.find('.') != std::string::npos) return std::nullopt;
   with_point[comma] = '.';
   return ToNumber<double>(with_point);
 }
 
-// What separates the fields: a semicolon, tabs, commas, or (' ') blanks of any kind. Tabs do where they part the line in
-// three or more, and commas do not where each word between blanks is a number, some with a decimal comma.
+// What separates the fields: a semicolon, tabs, commas, or (' ') blanks of any kind. Tabs do where they part the line
+// in three or more, and commas do not where each word between blanks is a number, some with a decimal comma.
 char SeparatorOf(std::string_view line) {
   if (line.find(';') != std::string_view::npos) return ';';
   std::vector<std::string_view> fields;

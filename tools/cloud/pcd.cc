@@ -19,7 +19,8 @@ using namespace cloud_text;
 
 constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
 
-// PCL's colour: the bytes 0 (or alpha), red, green, blue of a 4-byte number from the highest down, in a field rgb or rgba.
+// PCL's colour: the bytes 0 (or alpha), red, green, blue of a 4-byte number from the highest down, in a field rgb or
+// rgba.
 struct PackedColour {
   std::size_t column = 0;
   bool as_float = false;  // the row holds the float that has these bits, not the number
@@ -205,8 +206,8 @@ void ReadBinary(BinaryReader reader, Values values, std::size_t points, const st
   }
 }
 
-// DATA binary_compressed: the sizes of what comes, compressed and not, then the points' fields in LZF: all points' first
-// field, all points' second, and so on. Gives the bytes as DATA binary has them, point by point.
+// DATA binary_compressed: the sizes of what comes, compressed and not, then the points' fields in LZF: all points'
+// first field, all points' second, and so on. Gives the bytes as DATA binary has them, point by point.
 std::string Decompressed(BinaryReader reader, std::string_view rest, const Header& header, const Values& values,
                          std::size_t points, const std::string& name, CloudFile& file) {
   constexpr std::size_t kHead_bytes = 8;

@@ -14,8 +14,8 @@ namespace merlin {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-// The file's bytes: PCD or CSV where the name ends so, else PLY. rgb: a colour a point, or none (then they are light grey,
-// as in a run's map).
+// The file's bytes: PCD or CSV where the name ends so, else PLY. rgb: a colour a point, or none (then they are light
+// grey, as in a run's map).
 std::string ToCloud(const std::filesystem::path& name, std::span<const Eigen::Vector3d> positions,
                     std::span<const Rgb> rgb);
 

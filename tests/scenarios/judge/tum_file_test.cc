@@ -52,7 +52,8 @@ TEST(TumFile, TakesExponentsTabsWindowsLinesAndNoLastNewline) {
 TEST(TumFile, RefusesWithTheLine) {
   ExpectRefused("", "t.tum: no poses");
   ExpectRefused("# nothing\n\n", "t.tum: no poses");
-  ExpectRefused(kTwo + "1.9 4 5 6 0 0 0 1\n", "t.tum:4: the stamp comes before the one above it; expected 2.000000001 s");
+  ExpectRefused(kTwo + "1.9 4 5 6 0 0 0 1\n",
+                "t.tum:4: the stamp comes before the one above it; expected 2.000000001 s");
   ExpectRefused(kTwo + "3 4 5 6 0 0 0\n", "t.tum:4: the line ends before the quaternion");
   ExpectRefused(kTwo + "3 4 5 6 0 0 0 1 9\n", "t.tum:4: more fields");
   ExpectRefused(kTwo + "3,4,5,6,0,0,0,1\n", "t.tum:4: the stamp; expected a number");
@@ -65,7 +66,8 @@ TEST(TumFile, RefusesWithTheLine) {
 
 TEST(TumFile, NamesEveryFaultAtOnce) {
   ExpectRefused(kTwo + "3 4 5\n1 4 5 6 0 0 0 1\nx\n4 4 5 6 0 0 0 1 1\n",
-                "t.tum:4: the line ends before the position\nt.tum:5: the stamp comes before the one above it; expected "
+                "t.tum:4: the line ends before the position\n"
+                "t.tum:5: the stamp comes before the one above it; expected "
                 "2.000000001 s or more, got 1.000000000 s\nt.tum:6: the stamp; expected a number between -9e+09 and "
                 "9e+09, got 'x'\nt.tum:7: more fields than");
 }

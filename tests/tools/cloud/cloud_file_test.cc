@@ -238,10 +238,13 @@ TEST(Pcd, IsRefusedWhereCompressedDataAreNotWhatTheySay) {
   const std::string header = PcdHeader("2", "binary_compressed"), run = "\x17" + std::string(24, 'x');
   ExpectRefused(ParsePcd, header, "byte 120: the file ends");
   ExpectRefused(ParsePcd, header + Bytes<std::uint32_t>({26, 24}) + run, "the file ends within the compressed data");
-  ExpectRefused(ParsePcd, header + Bytes<std::uint32_t>({25, 25}) + run, "byte 124: not as many bytes as the header says");
+  ExpectRefused(ParsePcd, header + Bytes<std::uint32_t>({25, 25}) + run,
+                "byte 124: not as many bytes as the header says");
   ExpectRefused(ParsePcd, header + Bytes<std::uint32_t>({4000000000u, 24}) + run, "the file ends within");
-  ExpectRefused(ParsePcd, header + Bytes<std::uint32_t>({24, 24}) + run, "byte 129: the compressed data end within a run");
-  ExpectRefused(ParsePcd, header + Bytes<std::uint32_t>({2, 24}) + std::string(2, '\0'), "give fewer bytes than they say");
+  ExpectRefused(ParsePcd, header + Bytes<std::uint32_t>({24, 24}) + run,
+                "byte 129: the compressed data end within a run");
+  ExpectRefused(ParsePcd, header + Bytes<std::uint32_t>({2, 24}) + std::string(2, '\0'),
+                "give fewer bytes than they say");
   ExpectRefused(ParsePcd, PcdHeader("300000000", "binary_compressed") + Bytes<std::uint32_t>({25, 3600000000u}) + run,
                 "give fewer bytes than they say");
 }
@@ -260,7 +263,8 @@ TEST(Pcd, GivesPackedColours) {
 
 TEST(Pcd, NamesEveryFaultAtOnce) {
   ExpectRefused(ParsePcd, PcdHeader("4", "ascii") + "1 2 x\n1 2 3\n1 2\n",
-                "f:11: no number, got 'x'\nf:13: another number of values than fields; expected 3, got 2\nf:13: the file");
+                "f:11: no number, got 'x'\nf:13: another number of values than fields; expected 3, got 2\n"
+                "f:13: the file");
   ExpectRefused(ParsePcd, "A\nFIELDS x y z\nFIELDS x\nDATA ascii\n", "got 'A'\nf:3: FIELDS is there twice");
 }
 
@@ -331,20 +335,23 @@ TEST(Csv, IsReadAsOtherToolsWriteIt) {
     ExpectPoints(file, points);
     EXPECT_TRUE(file.warnings.empty() && file.left_out == 0) << text;
   }
-  for (const char* text : {"x;y;z\n1,0;2;3\n-4;0,5;6\n", "1,0 2,0 3,0\n-4 0,5 6\n", "1\t2\t3,0\twall, a\n-4\t0,5\t6\t\n"}) {
+  for (const char* text : {"x;y;z\n1,0;2;3\n-4;0,5;6\n", "1,0 2,0 3,0\n-4 0,5 6\n",
+                           "1\t2\t3,0\twall, a\n-4\t0,5\t6\t\n"}) {
     const CloudFile file = ParseCsv(text, "f");
     ExpectPoints(file, points);
     EXPECT_EQ(Warning(file), "f: commas in its numbers are taken for decimal points");
   }
   using Rgb = std::vector<std::array<std::uint8_t, 3>>;
   EXPECT_EQ(ParseCsv("//X Y Z R G B\n1 2 3 204 102 51\n", "f").rgb, (Rgb{{204, 102, 51}}));
-  EXPECT_EQ(ParseCsv("x,y,z,red,green,blue\n1,2,3,0.8,0.4,0.2\n1,2,3,1,,0\n", "f").rgb, (Rgb{{204, 102, 51}, {255, 0, 0}}));
+  EXPECT_EQ(ParseCsv("x,y,z,red,green,blue\n1,2,3,0.8,0.4,0.2\n1,2,3,1,,0\n", "f").rgb,
+            (Rgb{{204, 102, 51}, {255, 0, 0}}));
   EXPECT_EQ(ParseCsv("x,y,z,r,g,b\n1,2,3,1,0,1\n", "f").rgb, (Rgb{{1, 0, 1}}));
 }
 
 TEST(Csv, NamesEveryFaultAtOnce) {
   ExpectRefused(ParseCsv, "3\nx,y,z\n1,2,a\n1,2\n1,b,c\n",
-                "f:3: no number, got 'a'\nf:4: another number of columns than before; expected 3, got 2\nf:5: no number");
+                "f:3: no number, got 'a'\nf:4: another number of columns than before; expected 3, got 2\n"
+                "f:5: no number");
   std::string many = "x,y,z\n";
   for (int i = 0; i < 1000; ++i) many += "1,2,?\n";
   ExpectRefused(ParseCsv, many, "f:13: no number, got '?'\nf: and 988 more");
@@ -362,7 +369,8 @@ TEST(Csv, IsRefusedWithItsLine) {
   ExpectRefused(ParseCsv, "2\n3\n", "f:2: no coordinates");
   ExpectRefused(ParseCsv, "wall 1 2 3\n", "f:1: no coordinates; expected columns x, y, z, got 'wall' and 3 more");
   ExpectRefused(ParseCsv, "1,5,2,5,3,5\n1,5;2;3\n", "f:2: another number of columns");
-  ExpectRefused(ParseCsv, "x,y,z\n1,2,3,4\n1,2\n", "f:2: another number of columns than before; expected 3, got 4\nf:3:");
+  ExpectRefused(ParseCsv, "x,y,z\n1,2,3,4\n1,2\n",
+                "f:2: another number of columns than before; expected 3, got 4\nf:3:");
   ExpectRefused(ParseCsv, "1,2,3\n4,5,1e999\n", "f:2: no number");
   ExpectRefused(ParseCsv, "x,y,z,X\n1,2,3,4\n", "twice");
   ExpectRefused(ParseCsv, std::string("\x1b[2J\x00,2,3", 10), "f:1");

@@ -31,8 +31,8 @@ TEST(Lzf, ReachesAsFarAsTheFormat) {
   EXPECT_EQ(Decompress(data + "\xff\xff\xff", expected.size()), expected);
 }
 
-// An encoder that says everything by brute force: at each place the longest repetition of what is before it, overlapping
-// too, or bytes as they are.
+// An encoder that says everything by brute force: at each place the longest repetition of what is before it,
+// overlapping too, or bytes as they are.
 std::string Compressed(const std::string& text, bool repeat) {
   std::string out, plain;
   const auto flush = [&] {

@@ -13,7 +13,8 @@ namespace merlin {
 namespace {
 
 CloudFile Read(const std::string& name, const std::string& bytes) {
-  return name.ends_with("pcd") ? ParsePcd(bytes, name) : name.ends_with("csv") ? ParseCsv(bytes, name) : ParsePly(bytes, name);
+  if (name.ends_with("ply")) return ParsePly(bytes, name);
+  return name.ends_with("pcd") ? ParsePcd(bytes, name) : ParseCsv(bytes, name);
 }
 
 TEST(ToCloud, NearTheOriginIsThePlyOfARunsMap) {
@@ -39,7 +40,7 @@ TEST(ToCloud, KeepsATenthOfAMillimetreAtAnyDistance) {
         rgb.push_back({static_cast<std::uint8_t>(i), 200, 7});
       }
       const std::string bytes = ToCloud(name, positions, rgb);
-      const CloudFile file = Read(name.starts_with("A") ? "a.csv" : name, bytes);
+      const CloudFile file = Read(name, bytes);
       ASSERT_EQ(file.cloud.size(), positions.size());
       EXPECT_TRUE(file.warnings.empty());
       for (std::size_t i = 0; i < positions.size(); ++i)
