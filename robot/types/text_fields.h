@@ -9,9 +9,18 @@
 
 namespace merlin {
 
-// Calls each(line, number) for every line of a text, numbers from 1 on; neither "\n" nor "\r\n" belongs to the line.
+// The text without the byte-order mark that some editors put before UTF-8. Every reader of a text file ignores the mark
+// through this function, or through a library that does (yaml-cpp, MuJoCo's XML reader).
+constexpr std::string_view WithoutByteOrderMark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
+// Calls each(line, number) for every line of a text, numbers from 1 on; neither "\n" nor "\r\n" belongs to the line,
+// nor a byte-order mark to the first.
 template <class Each>
 void ForEachLine(std::string_view text, Each each) {
+  text = WithoutByteOrderMark(text);
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     std::string_view line = text.substr(0, end);

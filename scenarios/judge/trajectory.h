@@ -1,4 +1,4 @@
-// A path as a run leaves it: poses with stamps, ascending, no stamp twice.
+// A path: poses with stamps, ascending. A run leaves no stamp twice; a file may have equal ones (tum_file.h).
 #pragma once
 
 #include <vector>

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <cstddef>
 
 #include "robot/types/error.h"
+#include "robot/types/fault_list.h"
 #include "robot/types/text_fields.h"
 
 namespace merlin {
@@ -19,36 +20,43 @@ constexpr double kShortestQuaternion = 1e-6;
 
 struct Match {
   std::size_t shorter = 0, longer = 0;
-  Duration gap{0};
 };
 
-// One to one, ascending: of neighbours that want the same pose the nearer keeps it.
+// evo's matching_time_indices (evo/core/sync.py of 1.38), step by step and in its doubles, so that equal stamps, and
+// stamps half-way between two, go where evo's go.
 std::vector<Match> Matches(const Trajectory& shorter, const Trajectory& longer, Duration difference_max) {
+  const double most_s = Seconds(difference_max);
   std::vector<Match> matches;
   for (std::size_t i = 0; i < shorter.size(); ++i) {
     const Time stamp = shorter[i].stamp;
-    auto nearest = std::ranges::lower_bound(longer, stamp, {}, &StampedPose::stamp);
-    if (nearest == longer.end() ||
-        (nearest != longer.begin() && stamp - (nearest - 1)->stamp <= nearest->stamp - stamp))
-      --nearest;
-    const Match match{.shorter = i,
-                      .longer = static_cast<std::size_t>(nearest - longer.begin()),
-                      .gap = std::chrono::abs(nearest->stamp - stamp)};
-    if (match.gap > difference_max) continue;
-    if (matches.empty() || matches.back().longer != match.longer)
-      matches.push_back(match);
-    else if (match.gap < matches.back().gap)
-      matches.back() = match;
+    const double stamp_s = Seconds(stamp);
+    if (stamp_s < Seconds(longer.front().stamp) - most_s || stamp_s > Seconds(longer.back().stamp) + most_s) continue;
+    auto above = std::ranges::upper_bound(longer, stamp, {}, &StampedPose::stamp);
+    if (above == longer.end()) --above;
+    const double gap_above_s = Seconds(above->stamp) - stamp_s;  // below zero beyond the end
+    const double gap_below_s = above == longer.begin() ? HUGE_VAL : stamp_s - Seconds((above - 1)->stamp);
+    const bool take_above = gap_above_s <= most_s && gap_above_s < gap_below_s;
+    if (!take_above && gap_below_s > most_s) continue;
+    if (!take_above) --above;
+    matches.push_back({.shorter = i, .longer = static_cast<std::size_t>(above - longer.begin())});
   }
   return matches;
+}
+
+void Warn(TumFile& file, const std::string& name, const std::vector<std::size_t>& lines, const char* one,
+          const char* many, const char* what) {
+  if (!lines.empty())
+    file.warnings.push_back(fmt::format("{}: {} {} {} ({})", name, lines.size(), lines.size() == 1 ? one : many, what,
+                                        LinesOf(lines)));
 }
 
 }  // namespace
 
 TumFile ParseTum(std::string_view text, const std::string& name) {
   TumFile file;
-  std::vector<std::size_t> off_unit;
-  ForEachLine(text, [&](std::string_view line, std::size_t number) {
+  FaultList faults(name);
+  std::vector<std::size_t> off_unit, again;
+  const auto read = [&](std::string_view line, std::size_t number) {
     TextFields fields(line, name, number);
     if (fields.AtEnd() || line.starts_with('#')) return;
     const Time stamp = FromSeconds(fields.Number("the stamp", kLastStamp_s));
@@ -59,16 +67,19 @@ TumFile ParseTum(std::string_view text, const std::string& name) {
     fields.RequireEnd("'stamp x y z qx qy qz qw'");
     if (!(q.norm() > kShortestQuaternion)) throw InputError(fields.where(), "a quaternion of no length");
     if (std::abs(q.norm() - 1.0) > kUnitTolerance) off_unit.push_back(number);
-    if (!file.trajectory.empty() && stamp <= file.trajectory.back().stamp)
-      throw InputError(fields.where(), "the stamp does not come after the one before it",
-                       fmt::format("more than {:.9f} s", Seconds(file.trajectory.back().stamp)),
+    if (!file.trajectory.empty() && stamp < file.trajectory.back().stamp)
+      throw InputError(fields.where(), "the stamp comes before the one above it",
+                       fmt::format("{:.9f} s or more", Seconds(file.trajectory.back().stamp)),
                        fmt::format("{:.9f} s", Seconds(stamp)));
+    if (!file.trajectory.empty() && stamp == file.trajectory.back().stamp) again.push_back(number);
     file.trajectory.push_back({stamp, Eigen::Translation3d(p) * q.normalized()});
-  });
+  };
+  ForEachLine(text, [&](std::string_view line, std::size_t number) { faults.Try([&] { read(line, number); }); });
+  faults.ThrowIfAny();
   if (file.trajectory.empty()) throw InputError(name, "no poses", "lines 'stamp x y z qx qy qz qw'");
-  if (!off_unit.empty())
-    file.warnings.push_back(fmt::format("{}: {} quaternion{} off unit length, normalised ({})", name, off_unit.size(),
-                                        off_unit.size() == 1 ? "" : "s", LinesOf(off_unit)));
+  Warn(file, name, off_unit, "quaternion", "quaternions", "off unit length, normalised");
+  Warn(file, name, again, "stamp is", "stamps are",
+       "that of the pose above; all its poses are taken, and paired as evo does");
   return file;
 }
 

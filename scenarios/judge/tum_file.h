@@ -13,17 +13,17 @@ namespace merlin {
 
 struct TumFile {
   Trajectory trajectory{};
-  std::vector<std::string> warnings{};  // quaternions off unit length, which are normalised
+  std::vector<std::string> warnings{};  // quaternions off unit length, which are normalised; equal stamps
 };
 
-// Reads the whole text; name: the file's, for the errors. Throws InputError with name and line for a field that is
-// missing, too much, no number or beyond 1e9, a quaternion of no length, a stamp that does not come after the one
-// before it, and a text without poses.
+// Reads the whole text; name: the file's, for the errors. Throws InputError with every fault, each with name and line:
+// a field that is missing, too much, no number or beyond 1e9, a quaternion of no length, a stamp that comes before the
+// one above it; and for a text without poses.
 TumFile ParseTum(std::string_view text, const std::string& name);
 
-// Each pose of the one that has fewer (the estimate, of as many) with the other's nearest in time, the earlier of
-// equals, at most the difference away: evo's rule. But one to one: a pose that two are nearest to goes to the nearer
-// (the earlier of equals), where evo gives it to both.
+// Pairs as evo does: each pose of the trajectory that has fewer (of the estimate, where both have as many) with the
+// other's nearest in time, the earlier of two as near, at most the difference away. Two poses may get the same partner.
+// Of equal stamps the last serves poses at or after it, the first those before it.
 std::vector<PosePair> PairAtNearestStamps(const Trajectory& truth, const Trajectory& estimate, Duration difference_max);
 
 }  // namespace merlin

@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "robot/types/error.h"
+#include "robot/types/fault_list.h"
 #include "robot/types/nearest_name.h"
 #include "robot/types/text_fields.h"
 #include "slam/graph/edge_error.h"
 #include "slam/graph/initial_poses.h"
+#include "slam/graph/parts.h"
 #include "slam/graph/semidefinite.h"
 
 namespace merlin {
@@ -24,6 +25,11 @@ constexpr double kUnitTolerance = 1e-5;  // files of six digits stay below
 constexpr double kShortestQuaternion = 1e-6;
 constexpr double kIndefiniteTolerance = 1e-9;  // of the largest eigenvalue: rounding in a file of nine digits
 constexpr std::array<std::string_view, 5> kTags{"VERTEX_SE2", "EDGE_SE2", "VERTEX_SE3:QUAT", "EDGE_SE3:QUAT", "FIX"};
+// g2o's edges that are measured from a sensor's place on the robot, which a PARAMS line gives.
+constexpr std::array<std::string_view, 10> kTagsWithParameters{
+    "EDGE_SE2_OFFSET",     "EDGE_SE2_POINTXY_OFFSET", "EDGE_SE3_OFFSET",        "EDGE_SE3_PRIOR",
+    "EDGE_SE3_TRACKXYZ",   "EDGE_SE3_LOTSOF_XYZ",     "EDGE_PROJECT_DISPARITY", "EDGE_PROJECT_DEPTH",
+    "EDGE_PROJECT_P2MC",   "EDGE_PROJECT_P2SC"};
 
 struct Vertex {
   std::int64_t id = 0;
@@ -46,17 +52,23 @@ Matrix6d Rescaled(Matrix6d information, double rotation_factor) {
 
 class Reader {
  public:
-  explicit Reader(const std::string& name) : name_(name) {}
+  explicit Reader(const std::string& name) : name_(name), faults_(name) {}
 
   G2oFile Read(std::string_view text) {
-    ForEachLine(text, [this](std::string_view line, std::size_t number) { ReadLine(line, number); });
-    if (edges_.empty()) throw InputError(name_, "no edges", "at least one EDGE_SE2 or EDGE_SE3:QUAT");
-    file_.graph.planar = *planar_;
+    ForEachLine(text, [this](std::string_view line, std::size_t number) {
+      const std::size_t vertices = vertices_.size();
+      const bool read = faults_.Try([&] { ReadLine(line, number); });
+      const bool other = line.starts_with("EDGE") || line.starts_with("FIX");
+      lost_vertex_ = lost_vertex_ || (!read && !other && vertices_.size() == vertices);
+    });
+    if (edges_.empty() && faults_.empty())
+      throw InputError(name_, "no edges", "at least one EDGE_SE2 or EDGE_SE3:QUAT");
     PlaceVertices();
     ResolveEdges();
     ResolveFixed();
-    RequireOneComponent();
-    if (!file_.has_poses) file_.graph.poses = ChainedPoses(file_.graph);
+    faults_.ThrowIfAny();
+    file_.graph.planar = *planar_;
+    PlaceParts();
     Warn();
     return std::move(file_);
   }
@@ -65,7 +77,10 @@ class Reader {
   void ReadLine(std::string_view line, std::size_t number) {
     TextFields fields(line, name_, number);
     const std::string_view tag = fields.Word();
-    if (tag.empty() || tag.starts_with('#')) return;
+    if (tag.empty() || tag.starts_with('#') || tag.starts_with("PARAMS_")) return;
+    if (std::ranges::find(kTagsWithParameters, tag) != kTagsWithParameters.end())
+      throw InputError(fields.where(), "an edge that uses a PARAMS line, which is not supported",
+                       "EDGE_SE2 or EDGE_SE3:QUAT", Quoted(tag));
     if (std::ranges::find(kTags, tag) == kTags.end()) {
       const std::string nearest = NearestName(tag.substr(0, 40), kTags);
       throw InputError(fields.where(), "unknown tag", nearest + " or another of g2o's poses and edges", Quoted(tag));
@@ -88,23 +103,20 @@ class Reader {
     } while (!fields.AtEnd());
   }
 
+  // What is refused later in the line keeps its ids, so that no other line is blamed for them.
   void ReadVertex(TextFields& fields, std::size_t number) {
-    Vertex vertex{.id = fields.Whole("the pose's id"), .line = number};
-    vertex.T_map_pose = ReadPose(fields, number);
-    vertices_.push_back(vertex);
+    vertices_.push_back({.id = fields.Whole("the pose's id"), .line = number});
+    vertices_.back().T_map_pose = ReadPose(fields, number);
   }
 
   void ReadEdge(TextFields& fields, std::size_t number, std::string_view line) {
-    GraphEdge edge;
-    Ends ends{.from = fields.Whole("the first pose's id"),
-              .to = fields.Whole("the second pose's id"),
-              .line = number,
-              .text = line};
+    Ends ends{.from = fields.Whole("the first pose's id"), .line = number, .text = line};
+    ends.to = fields.Whole("the second pose's id");
     if (ends.from == ends.to) throw InputError(fields.where(), "an edge from a pose to itself");
+    edges_.push_back(ends);
+    GraphEdge& edge = file_.graph.edges.emplace_back();
     edge.T_from_to = ReadPose(fields, number);
     edge.information = ReadInformation(fields, number);
-    edges_.push_back(ends);
-    file_.graph.edges.push_back(edge);
   }
 
   Pose ReadPose(TextFields& fields, std::size_t number) {
@@ -141,10 +153,9 @@ class Reader {
         for (const std::int64_t id : {edge.from, edge.to}) vertices_.push_back({.id = id, .line = edge.line});
     }
     std::ranges::stable_sort(vertices_, {}, &Vertex::id);
-    const auto twice = std::ranges::adjacent_find(vertices_, {}, &Vertex::id);
-    if (file_.has_poses && twice != vertices_.end())
-      throw InputError(At((twice + 1)->line),
-                       fmt::format("pose {} again; it is in line {} already", twice->id, twice->line));
+    for (std::size_t i = 1; file_.has_poses && i < vertices_.size(); ++i)
+      if (const Vertex &first = vertices_[i - 1], &again = vertices_[i]; first.id == again.id)
+        faults_.Add(fmt::format("{}: pose {} again; it is in line {} already", At(again.line), again.id, first.line));
     const auto repeated = std::ranges::unique(vertices_, {}, &Vertex::id);
     vertices_.erase(repeated.begin(), repeated.end());
     for (const Vertex& vertex : vertices_) {
@@ -160,34 +171,41 @@ class Reader {
   }
 
   void ResolveEdges() {
-    for (std::size_t i = 0; i < edges_.size(); ++i) {
-      file_.graph.edges[i].from = IndexOf(edges_[i].from, edges_[i].line);
-      file_.graph.edges[i].to = IndexOf(edges_[i].to, edges_[i].line);
+    for (std::size_t i = 0; i < edges_.size() && !lost_vertex_; ++i) {
+      faults_.Try([&] { file_.graph.edges[i].from = IndexOf(edges_[i].from, edges_[i].line); });
+      faults_.Try([&] { file_.graph.edges[i].to = IndexOf(edges_[i].to, edges_[i].line); });
     }
   }
 
   void ResolveFixed() {
-    for (const Vertex& fixed : fixed_) file_.graph.fixed.push_back(IndexOf(fixed.id, fixed.line));
     std::vector<std::size_t>& indices = file_.graph.fixed;
+    for (std::size_t i = 0; i < fixed_.size() && !lost_vertex_; ++i)
+      faults_.Try([&] { indices.push_back(IndexOf(fixed_[i].id, fixed_[i].line)); });
     std::ranges::sort(indices);
     const auto repeated = std::ranges::unique(indices);
     indices.erase(repeated.begin(), repeated.end());
-    if (!file_.has_poses && indices.size() > 1)
-      throw InputError(At(fixed_.back().line), "more than one FIX, but no VERTEX says where these poses are");
   }
 
-  void RequireOneComponent() const {
-    std::vector<std::size_t> parent(file_.ids.size());
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto root = [&parent](std::size_t i) {
-      for (; parent[i] != i; i = parent[i]) parent[i] = parent[parent[i]];
-      return i;
-    };
-    for (const GraphEdge& edge : file_.graph.edges) parent[root(edge.from)] = root(edge.to);
-    for (std::size_t i = 1; i < parent.size(); ++i)
-      if (root(i) != root(0))
-        throw InputError(At(vertices_[i].line),
-                         fmt::format("no chain of edges joins pose {} to pose {}", file_.ids[i], file_.ids[0]));
+  // Without VERTEX lines each part has a frame of its own, in which one pose at most is known.
+  void PlaceParts() {
+    std::vector<GraphPart> parts = PartsOf(file_.graph);
+    if (!file_.has_poses) {
+      for (GraphPart& part : parts) {
+        if (part.graph.fixed.size() > 1) {
+          const std::int64_t id = file_.ids[part.poses[part.graph.fixed.back()]];
+          throw InputError(At(std::ranges::find(fixed_, id, &Vertex::id)->line),
+                           "more than one FIX, but no VERTEX says where these poses are");
+        }
+        part.graph.poses = ChainedPoses(part.graph);
+        PutPoses(part, file_.graph);
+      }
+    }
+    if (parts.size() == 1) return;
+    const auto single = std::ranges::count_if(parts, [](const GraphPart& part) { return part.poses.size() == 1; });
+    file_.warnings.push_back(
+        fmt::format("{}: the graph has {} parts that no edge joins; each is solved by itself, about its FIX or its first "
+                    "pose{}",
+                    name_, parts.size(), single > 0 ? fmt::format(" ({} of one pose, which stays)", single) : ""));
   }
 
   std::vector<std::size_t> RepeatedEdges() {
@@ -215,6 +233,8 @@ class Reader {
   std::string At(std::size_t line) const { return fmt::format("{}:{}", name_, line); }
 
   const std::string& name_;
+  FaultList faults_;
+  bool lost_vertex_ = false;  // a line was refused that may have been a pose: which edges lack one is not known
   G2oFile file_;
   std::optional<bool> planar_;
   std::vector<Vertex> vertices_, fixed_;

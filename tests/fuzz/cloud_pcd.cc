@@ -10,8 +10,12 @@ std::vector<Bytes> fuzz::Seeds() {
   std::vector<Bytes> seeds{ToBytes("# .PCD\n" + fields + "COUNT 1 1 1\n" + points + "DATA ascii\n1 2 3\n4 5 6\n"),
                            ToBytes(fields + points + "DATA binary\n" + one + one + one + one + one + one),
                            ToBytes("FIELDS x y z rgb\nSIZE 8 8 8 1\nTYPE F F F U\nCOUNT 1 1 1 3\nWIDTH 1\nHEIGHT 1\n"
-                                   "VIEWPOINT 0 0 0 1 0 0 0\nDATA ascii\n1 2 3 9 8 7\n")};
-  for (const char* word : {"WIDTH ", "COUNT ", "DATA binary\n", "F", "8", "18446744073709551615"})
+                                   "VIEWPOINT 0 0 0 1 0 0 0\nDATA ascii\n1 2 3 9 8 7\n"),
+                           // four bytes as they are, six from four back, fourteen from ten back
+                           ToBytes(fields + points + "DATA binary_compressed\n" +
+                                   std::string("\x0a\0\0\0\x18\0\0\0\x03zzzz\x80\x03\xe0\x05\x09", 18))};
+  for (const char* word :
+       {"WIDTH ", "COUNT ", "DATA binary\n", "DATA binary_compressed\n", "F", "8", "18446744073709551615"})
     seeds.push_back(ToBytes(word));
   AddWords(seeds);
   return seeds;

@@ -13,7 +13,7 @@ void Check(std::string_view text) {
   if (!file) return;
   const Trajectory& trajectory = file->trajectory;
   fuzz::Expect(!trajectory.empty(), "there are poses");
-  fuzz::Expect(std::ranges::adjacent_find(trajectory, std::greater_equal(), &StampedPose::stamp) == trajectory.end(),
+  fuzz::Expect(std::ranges::adjacent_find(trajectory, std::greater(), &StampedPose::stamp) == trajectory.end(),
                "stamps ascend");
   for (const StampedPose& pose : trajectory) fuzz::Expect(pose.T.matrix().allFinite(), "poses are finite");
   fuzz::Expect(PairAtNearestStamps(trajectory, trajectory, Duration(0)).size() == trajectory.size(),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "robot/types/error.h"
+#include "robot/types/fault_list.h"
 
 namespace merlin {
 namespace {
@@ -50,6 +51,35 @@ TEST(ForEachLine, NumbersLinesOfAnyEnding) {
   ForEachLine("a\r\n\nb\n", add);
   ForEachLine("c", add);
   EXPECT_EQ(lines, (std::vector<std::pair<std::string, std::size_t>>{{"a", 1}, {"", 2}, {"b", 3}, {"c", 1}}));
+}
+
+TEST(ForEachLine, IgnoresAByteOrderMarkAtTheStartOnly) {
+  std::vector<std::string> lines;
+  const auto add = [&lines](std::string_view line, std::size_t) { lines.emplace_back(line); };
+  ForEachLine("\xEF\xBB\xBF", add);
+  EXPECT_TRUE(lines.empty());
+  ForEachLine("\xEF\xBB\xBF#\n\xEF\xBB\xBFx", add);
+  ForEachLine("\xEF\xBB", add);  // a part of it is none
+  EXPECT_EQ(lines, (std::vector<std::string>{"#", "\xEF\xBB\xBFx", "\xEF\xBB"}));
+}
+
+TEST(FaultList, NamesADozenFaultsAndCountsTheOthers) {
+  FaultList faults("f.txt");
+  EXPECT_TRUE(faults.empty());
+  EXPECT_NO_THROW(faults.ThrowIfAny());
+  EXPECT_TRUE(faults.Try([] {}));
+  std::string expected;
+  for (int line = 1; line <= 14; ++line) {
+    const std::string where = "f.txt:" + std::to_string(line);
+    EXPECT_FALSE(faults.Try([&] { throw InputError(where, "bad"); }));
+    if (line <= 12) expected += where + ": bad\n";
+  }
+  try {
+    faults.ThrowIfAny();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), expected + "f.txt: and 2 more");
+  }
 }
 
 TEST(Quoted, CutsAndHidesWhatATerminalWouldObey) {

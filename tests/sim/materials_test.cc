@@ -55,6 +55,11 @@ TEST(ReadMaterials, TakesAlbedosAndDefault) {
   EXPECT_EQ(materials.by_name.size(), 3u);
 }
 
+TEST(ReadMaterials, IgnoresAByteOrderMark) {
+  const TemporaryFile file("\xEF\xBB\xBFmaterials:\n  white_wall: {nir_albedo: 0.8}\n");
+  EXPECT_DOUBLE_EQ(ReadMaterials(file.path()).Find("white_wall").nir_albedo, 0.8);
+}
+
 TEST(ReadMaterials, HasHalfAsDefaultWhenTheFileGivesNone) {
   const TemporaryFile file("materials: {}\n");
   EXPECT_DOUBLE_EQ(ReadMaterials(file.path()).Find("wall").nir_albedo, 0.5);

@@ -1,4 +1,5 @@
 // `merlin optimize` and `merlin eval` as their users meet them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,16 +55,38 @@ TEST(OptimizeCli, SolvesWritesAndReadsItsOwnFile) {
 TEST(OptimizeCli, RefusesBadInputWithOneSentenceAndWritesNothing) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "square.g2o") << kSquare;
-  std::ofstream(folder.path() / "apart.g2o") << kSquare << "EDGE_SE2 7 8 0 0 1 1 0 0 1 0 100\n";
+  std::ofstream(folder.path() / "faults.g2o") << kSquare << "EDGE_SE2 7 7\nFIX x\n";
   std::ofstream(folder.path() / "empty.g2o");
   ExpectRefused("optimize", "graph", folder.path());
   ExpectRefused("optimize none.g2o --out solved.g2o", "none.g2o: cannot be read", folder.path());
   ExpectRefused("optimize . --out solved.g2o", "cannot be read", folder.path());
-  ExpectRefused("optimize apart.g2o --out solved.g2o", "apart.g2o:5: no chain of edges", folder.path());
+  ExpectRefused("optimize faults.g2o --out solved.g2o", "faults.g2o:5: an edge from", folder.path());
+  ExpectRefused("optimize faults.g2o --out solved.g2o", "faults.g2o:6: the id", folder.path());
   ExpectRefused("optimize empty.g2o --out solved.g2o", "no edges", folder.path());
   ExpectRefused("optimize square.g2o --objective c", "--objective", folder.path());
   ExpectRefused("optimize square.g2o --out ''", "--out", folder.path());
   EXPECT_EQ(Merlin("optimize square.g2o --out none/solved.g2o", folder.path()).code, 2);
+}
+
+// The square twice: each is solved as the square alone, about its own FIX or its first pose.
+TEST(OptimizeCli, SolvesPartsThatNoEdgeJoinsByThemselves) {
+  const TemporaryFolder folder;
+  const std::string second =
+      "EDGE_SE2 40 41 0 0 1.5707963267948966 1 0 0 1 0 100\nEDGE_SE2 41 42 0 0 1.5707963267948966 1 0 0 1 0 100\n"
+      "EDGE_SE2 42 43 0 0 1.5707963267948966 1 0 0 1 0 100\nEDGE_SE2 43 40 0 0 1.6107963267948966 1 0 0 1 0 100\n";
+  std::ofstream(folder.path() / "one.g2o") << kSquare;
+  std::ofstream(folder.path() / "two.g2o") << "PARAMS_SE2OFFSET 0 0 0 0\n" << kSquare << second << "FIX 42\n";
+  const nlohmann::json one = Json("optimize one.g2o", folder.path());
+  const nlohmann::json two = Json("optimize two.g2o --out solved.g2o", folder.path());
+  EXPECT_EQ(one["parts"], 1);
+  EXPECT_EQ(two["parts"], 2);
+  EXPECT_TRUE(one["warnings"].empty());
+  EXPECT_EQ(two["warnings"].size(), 1u);
+  EXPECT_TRUE(two["converged"]);
+  for (const char* objective : {"objective_a", "objective_b"})
+    EXPECT_NEAR(two[objective].get<double>(), 2.0 * one[objective].get<double>(), 1e-12);
+  EXPECT_NE(Contents(folder.path() / "solved.g2o").find("VERTEX_SE2 42 0 0 0\n"), std::string::npos);
+  EXPECT_EQ(Json("optimize solved.g2o", folder.path())["objective_b"], two["objective_b"]);
 }
 
 TEST(OptimizeCli, SaysWhatItMended) {
@@ -115,12 +138,18 @@ TEST(EvalCli, RefusesBadInputWithOneSentence) {
   const auto& folder = straight.folder.path();
   std::ofstream(folder / "late.tum") << "1000 0 0 0 0 0 0 1\n";
   std::ofstream(folder / "back.tum") << "1 0 0 0 0 0 0 1\n0.5 0 0 0 0 0 0 1\n";
+  std::ofstream(folder / "two.tum") << "1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n";
   std::ofstream(folder / "stands.tum") << "1 1 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n3 1 0 0 0 0 0 1\n";
   ExpectRefused("eval truth.tum", "estimate", folder);
   ExpectRefused("eval truth.tum none.tum", "none.tum: cannot be read", folder);
   ExpectRefused("eval truth.tum late.tum", "late.tum: no stamp within 0.02 s", folder);
   ExpectRefused("eval back.tum truth.tum", "back.tum:2: the stamp", folder);
-  ExpectRefused("eval truth.tum stands.tum --align sim3", "scale", folder);
+  ExpectRefused("eval truth.tum two.tum", "two.tum: too few pairs for a figure; expected 3 or more", folder);
+  for (const char* align : {"none", "se3", "sim3"}) {
+    const std::string option = std::string(" --align ") + align, part = "stands.tum: the positions of all 3 pairs";
+    ExpectRefused("eval truth.tum stands.tum" + option, part, folder);
+    ExpectRefused("eval stands.tum truth.tum" + option, part, folder);
+  }
   ExpectRefused("eval truth.tum estimate.tum --align so3", "--align", folder);
   for (const char* number : {"nan", "0", "-1", "inf", "x", "''"})
     ExpectRefused("eval truth.tum estimate.tum --delta " + std::string(number), "--delta", folder);
@@ -195,6 +224,37 @@ TEST(EvalCli, AgreesWithEvoOnARandomWalk) {
       EXPECT_NEAR(figures["ate_" + name + "_m"], Figure(ape, name), 2e-6) << align << " " << name;
       EXPECT_NEAR(figures["rpe_translation_" + name + "_m"], Figure(translation, name), 2e-6) << align << " " << name;
       EXPECT_NEAR(figures["rpe_rotation_" + name + "_deg"], Figure(rotation, name), 2e-6) << align << " " << name;
+    }
+  }
+}
+
+// Stamps on a grid of 0.1 s, many of them equal, in files of either length, a byte-order mark before one: the same
+// pairs, hence the same figures, as evo.
+TEST(EvalCli, PairsEqualStampsAsEvoDoes) {
+  const TemporaryFolder folder;
+  std::mt19937 generator(7);
+  std::normal_distribution<double> normal;
+  const auto write = [&](const char* name, int poses) {
+    std::string text = "\xEF\xBB\xBF";
+    for (int i = 0, tenths = 0; i < poses; ++i, tenths += static_cast<int>(generator() % 3))
+      text += fmt::format("{:.1f} {} {} {} 0 0 0 1\n", 0.1 * tenths, 0.1 * tenths + 0.01 * normal(generator),
+                          std::sin(0.1 * tenths), 0.01 * normal(generator));
+    WriteFile(folder.path() / name, text);
+  };
+  for (const int poses : {60, 80, 100}) {
+    write("truth.tum", 80);
+    write("estimate.tum", poses);
+    const std::string files = " truth.tum estimate.tum ";
+    const std::string ape = Evo("evo_ape tum" + files + "-a --t_max_diff 0.2", folder.path());
+    const std::string rpe = Evo("evo_rpe tum" + files +
+                                    "--delta 1 --delta_unit m --all_pairs --pairs_from_reference --t_max_diff 0.2",
+                                folder.path());
+    if (std::isnan(Figure(ape, "rmse"))) GTEST_SKIP() << "evo is absent (evo_ape in the path, or $MERLIN_EVO)";
+    const nlohmann::json figures = Json("eval" + files + "--max-difference 0.2", folder.path());
+    EXPECT_EQ(figures["warnings"].size(), 2u);
+    for (const std::string name : {"rmse", "mean", "max"}) {
+      EXPECT_NEAR(figures["ate_" + name + "_m"], Figure(ape, name), 2e-6) << poses << " " << name;
+      EXPECT_NEAR(figures["rpe_translation_" + name + "_m"], Figure(rpe, name), 2e-6) << poses << " " << name;
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 #include <string>
 
 #include "robot/types/se3.h"
@@ -68,6 +69,55 @@ TEST(RegisterCli, WritesTheAlignedSourceWhole) {
   EXPECT_EQ(Register("s.csv t.csv --out no/such/folder.ply", folder).code, 2);
 }
 
+// The corner at coordinates of a national grid: what is written lies where the printed pose, in doubles, puts it, be it
+// the machine's or the text's, and the pose about the corner is that of the corner at the origin.
+TEST(RegisterCli, KeepsATenthOfAMillimetreFarFromTheOrigin) {
+  const TemporaryFolder folder;
+  const Pose far(Eigen::Translation3d(433000.0, 5614000.0, 250.0)), T = FromXyYaw(0.05, -0.03, 0.04);
+  WriteCorner(folder.path() / "s.csv", far);
+  WriteCorner(folder.path() / "t.csv", far * T);
+  const Outcome outcome = Register("s.csv t.csv --json --out a.csv", folder);
+  ASSERT_EQ(outcome.code, 0) << outcome.said;
+  const auto json = nlohmann::json::parse(outcome.said);
+  std::istringstream text(Register("s.csv t.csv --out a.ply", folder).said);
+  std::string title;
+  text >> title;
+  Eigen::Matrix4d of_json, of_text;
+  for (int i = 0; i < 16; ++i) {
+    of_json(i / 4, i % 4) = json["T_target_source"][static_cast<std::size_t>(i)].get<double>();
+    text >> of_text(i / 4, i % 4);
+  }
+  EXPECT_LT((far.inverse().matrix() * of_json * far.matrix() - T.matrix()).norm(), 0.01);
+  std::ifstream source(folder.path() / "s.csv"), aligned(folder.path() / "a.csv");
+  std::string header;
+  std::getline(aligned, header);
+  EXPECT_EQ(header, "x,y,z");
+  int points = 0;
+  char comma = 0;
+  const auto read = [&comma](std::ifstream& in, Eigen::Vector4d& p) {
+    return static_cast<bool>(in >> p(0) >> comma >> p(1) >> comma >> p(2));
+  };
+  for (Eigen::Vector4d p(0, 0, 0, 1), a(0, 0, 0, 1); read(source, p) && read(aligned, a); ++points) {
+    ASSERT_LT((of_json * p - a).norm(), 1e-4);
+    ASSERT_LT((of_text * p - a).norm(), 1e-4);
+  }
+  EXPECT_EQ(points, 1500);
+  EXPECT_NE(Contents(folder.path() / "a.ply").find("property double x\n"), std::string::npos);
+}
+
+TEST(RegisterCli, SaysWhatItLeftOutOfAFile) {
+  const TemporaryFolder folder;
+  WriteCorner(folder.path() / "t.csv", Pose::Identity());
+  std::ofstream(folder.path() / "s.csv") << Contents(folder.path() / "t.csv") << "1,,1\nnan,1,1\n";
+  EXPECT_NE(Register("s.csv t.csv", folder).said.find("left out: 2 and 0 points whose coordinates are empty"),
+            std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(Register("t.csv s.csv --json", folder).said)["left_out"], nlohmann::json({0, 2}));
+  EXPECT_EQ(Register("t.csv t.csv --out a.ply", folder).code, 0);
+  std::ofstream(folder.path() / "a.ply", std::ios::app) << "more";
+  EXPECT_NE(Register("a.ply t.csv", folder).said.find("merlin: warning: a.ply: 4 bytes behind"), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(Register("a.ply t.csv --json", folder).said)["warnings"].size(), 1u);
+}
+
 TEST(RegisterCli, SaysWithExitOneThatItDidNotConverge) {
   const TemporaryFolder folder;
   WriteCorner(folder.path() / "s.csv", Pose::Identity());
@@ -104,6 +154,7 @@ TEST(RegisterCli, RefusesBadInputInOneSentence) {
       {"empty.csv s.csv", "empty.csv"},
       {"s.csv bad.csv", "bad.csv:2"},
       {"s.csv huge.ply", "huge.ply:3"},
+      {"s.csv s.dae", "s.dae: not a cloud by its name; expected a .ply, .pcd, .csv, .txt, .xyz, .asc or .pts"},
       {"s.csv s.csv --method icp", "--method"},
       {"s.csv s.csv --voxel 0", "--voxel"},
       {"s.csv s.csv --max-distance nan", "--max-distance"},

@@ -1,12 +1,14 @@
 // `merlin eval`: how far an estimated trajectory lies from the true one, in the figures of the evo package.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robot/types/error.h"
@@ -40,6 +42,28 @@ std::string Span(const Trajectory& trajectory) {
   return fmt::format("{:.3f} to {:.3f} s", Seconds(trajectory.front().stamp), Seconds(trajectory.back().stamp));
 }
 
+// Whether the positions are the same but for the last digits of a file; of at least one pair.
+bool InOnePlace(const std::vector<PosePair>& pairs, Pose PosePair::* side) {
+  constexpr double kSame_m = 1e-6;
+  return std::ranges::all_of(pairs, [&](const PosePair& pair) {
+    return ((pair.*side).translation() - (pairs.front().*side).translation()).norm() <= kSame_m;
+  });
+}
+
+// Three positions at least, and not all the same, are what an alignment and a figure need.
+void CheckPairs(const Arguments& arguments, const std::vector<PosePair>& pairs) {
+  if (pairs.size() < 3)
+    throw InputError(arguments.estimate, "too few pairs for a figure",
+                     fmt::format("3 or more stamps within {} s of one of {}", arguments.max_difference_s,
+                                 arguments.truth),
+                     fmt::format("{}", pairs.size()));
+  for (const auto& [file, side] : {std::pair{arguments.truth, &PosePair::T_world_base},
+                                   std::pair{arguments.estimate, &PosePair::T_map_base}})
+    if (InOnePlace(pairs, side))
+      throw InputError(file, fmt::format("the positions of all {} pairs are in one place: nothing tells turn or scale",
+                                         pairs.size()), "a path");
+}
+
 Evaluation Evaluate(const Arguments& arguments) {
   const auto read = [](const std::string& file) { return ParseTum(ReadFile(file, "a trajectory (TUM)"), file); };
   const TumFile truth = read(arguments.truth), estimate = read(arguments.estimate);
@@ -49,8 +73,9 @@ Evaluation Evaluate(const Arguments& arguments) {
     throw InputError(arguments.estimate,
                      fmt::format("no stamp within {} s of one of {}", arguments.max_difference_s, arguments.truth),
                      Span(truth.trajectory), Span(estimate.trajectory));
+  CheckPairs(arguments, pairs);
   const std::optional<Ate> ate = AlignAndAte(pairs, AlignmentOf(arguments.align));
-  if (!ate) throw InputError(arguments.estimate, "nothing tells its scale: all its positions are the same");
+  if (!ate) throw InputError(arguments.estimate, "nothing tells its scale");
 
   Evaluation evaluation{.warnings = truth.warnings,
                         .truth_poses = truth.trajectory.size(),

@@ -17,6 +17,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cloud/cloud_file.h"
 #include "tools/cloud/text.h"
+#include "tools/cloud/write_cloud.h"
 
 namespace merlin::cli {
 namespace {
@@ -38,7 +39,7 @@ struct Clouds {
 
 [[noreturn]] void RefuseGuess(const std::string& text, const std::string& why) {
   throw InputError("--guess", why, "x,y,z,roll,pitch,yaw in metres and radians, or the 16 numbers of a pose row by row",
-                   cloud_text::Quoted(text));
+                   Quoted(text));
 }
 
 Pose ReadGuess(const std::string& text) {
@@ -106,6 +107,12 @@ ordered_json Rows(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   return numbers;
 }
 
+std::vector<std::string> Warnings(const Clouds& clouds) {
+  std::vector<std::string> warnings = clouds.source.warnings;
+  warnings.insert(warnings.end(), clouds.target.warnings.begin(), clouds.target.warnings.end());
+  return warnings;
+}
+
 std::string Json(const AlignResult& r, const Clouds& clouds, double time_ms) {
   ordered_json open = ordered_json::array();
   for (const auto& direction : r.undetermined.directions.colwise()) open.push_back(Rows(direction));
@@ -122,15 +129,16 @@ std::string Json(const AlignResult& r, const Clouds& clouds, double time_ms) {
                       {"covariance", Rows(r.covariance)},
                       {"undetermined", open},
                       {"points", {clouds.thin_source.size(), clouds.thin_target.size()}},
-                      {"left_out", {clouds.source.left_out, clouds.target.left_out}}}
-             .dump() +
+                      {"left_out", {clouds.source.left_out, clouds.target.left_out}},
+                      {"warnings", Warnings(clouds)}}
+             .dump(-1, ' ', false, ordered_json::error_handler_t::replace) +
          "\n";
 }
 
 std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
-  std::string text = "T_target_source\n";
+  std::string text = "T_target_source\n";  // in so many digits that it moves a point 1e9 m away as the result does
   for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) text += fmt::format(" {:12.7f}", r.T_target_source.matrix()(i, j));
+    for (int j = 0; j < 4; ++j) text += fmt::format(" {:20.15f}", r.T_target_source.matrix()(i, j));
     text += "\n";
   }
   text += fmt::format("{}\n{} of {} source points have a target point within {:.4g} m (overlap {:.3f}), rms {:.4g} m\n",
@@ -140,7 +148,8 @@ std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
                         d(4), d(5));
   if (clouds.source.left_out + clouds.target.left_out > 0)
     text +=
-        fmt::format("left out: {} and {} points that are not finite\n", clouds.source.left_out, clouds.target.left_out);
+        fmt::format("left out: {} and {} points whose coordinates are empty, not finite or beyond 1e9 m\n",
+                    clouds.source.left_out, clouds.target.left_out);
   return text + fmt::format("{}: {} onto {} points, {} iterations, {:.1f} ms\n",
                             kMethodNames[static_cast<int>(r.method)], clouds.thin_source.size(),
                             clouds.thin_target.size(), r.iterations, time_ms);
@@ -148,12 +157,9 @@ std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
 
 // The whole source, in the target's frame.
 void WriteAligned(const std::string& out, const CloudFile& source, const Pose& T_target_source) {
-  std::vector<MapPoint> points(source.cloud.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i].p_map = (T_target_source * source.cloud.positions[i]).cast<float>();
-    if (!source.rgb.empty()) points[i].rgb = source.rgb[i];
-  }
-  WriteFile(out, ToPly(points));
+  std::vector<Eigen::Vector3d> positions = source.cloud.positions;
+  for (Eigen::Vector3d& position : positions) position = T_target_source * position;
+  WriteFile(out, ToCloud(out, positions, source.rgb));
 }
 
 // NaN passes CLI11's own check of a range.
@@ -177,6 +183,8 @@ int Register(const Arguments& a) {
   const double time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   if (interrupted) return kInterrupted;
   if (!a.out.empty()) WriteAligned(a.out, clouds.source, result.T_target_source);
+  for (const std::string& warning : a.json ? std::vector<std::string>() : Warnings(clouds))
+    fmt::print(stderr, "merlin: warning: {}\n", warning);
   fmt::print("{}", a.json ? Json(result, clouds, time_ms) : Text(result, clouds, time_ms));
   return result.converged() ? kPass : kFail;
 }
@@ -187,7 +195,9 @@ void AddRegister(CLI::App& app, int& exit_code) {
   const auto a = std::make_shared<Arguments>();
   CLI::App* reg =
       app.add_subcommand("register", "aligns two clouds: finds T_target_source, p_target = T_target_source * p_source");
-  reg->add_option("source", a->source, "PLY, PCD or CSV (x,y,z with or without a header), in metres")->required();
+  reg->add_option("source", a->source,
+                  "PLY, PCD, or text (.csv, .txt, .xyz, .asc, .pts: x y z, with or without a header), in metres")
+      ->required();
   reg->add_option("target", a->target, "likewise; stays where it is")->required();
   reg->add_option("--method", a->method, "how a pair is measured; default gicp where there are surfaces, else point")
       ->check(CLI::IsMember({"point", "plane", "gicp"}));
@@ -196,7 +206,8 @@ void AddRegister(CLI::App& app, int& exit_code) {
   reg->add_option("--guess", a->guess,
                   "T_target_source: x,y,z,roll,pitch,yaw (m, rad), or 16 numbers row by row; default none");
   reg->add_option("--voxel", a->voxel_m, "M: first thins both to one point a cube of this edge");
-  reg->add_option("--out", a->out, "PLY: the source in the target's frame, also where it did not converge")
+  reg->add_option("--out", a->out,
+                  "PLY (PCD, CSV by its name): the source in the target's frame, also where it did not converge")
       ->check(NotEmpty);
   reg->add_flag("--json", a->json, "for machines");
   reg->footer("exit code: 0 converged, 1 not (few pairs, or a direction that the clouds do not hold), 2 bad input");

@@ -13,11 +13,11 @@ namespace merlin {
 CloudFile ReadCloud(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto parse = ending == ".ply"                                           ? ParsePly
-                     : ending == ".pcd"                                         ? ParsePcd
-                     : ending == ".csv" || ending == ".txt" || ending == ".xyz" ? ParseCsv
-                                                                                : nullptr;
-  if (parse == nullptr) throw InputError(file.string(), "not a cloud by its name", "a .ply, .pcd, .csv, .txt or .xyz");
+  constexpr std::array kTexts{".csv", ".txt", ".xyz", ".asc", ".pts"};
+  const bool text = std::ranges::find(kTexts, ending) != kTexts.end();
+  const auto parse = ending == ".ply" ? ParsePly : ending == ".pcd" ? ParsePcd : text ? ParseCsv : nullptr;
+  if (parse == nullptr)
+    throw InputError(file.string(), "not a cloud by its name", "a .ply, .pcd, .csv, .txt, .xyz, .asc or .pts");
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw InputError(file.string(), "a folder", "a file");
   std::ifstream in(file, std::ios::binary);

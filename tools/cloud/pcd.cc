@@ -1,10 +1,14 @@
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <limits>
 #include <map>
 
 #include "robot/types/error.h"
+#include "robot/types/fault_list.h"
 #include "tools/cloud/cloud_file.h"
 #include "tools/cloud/columns.h"
+#include "tools/cloud/lzf.h"
 #include "tools/cloud/scalar.h"
 #include "tools/cloud/text.h"
 
@@ -15,10 +19,29 @@ using namespace cloud_text;
 
 constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
 
+// PCL's colour: the bytes 0 (or alpha), red, green, blue of a 4-byte number from the highest down, in a field rgb or
+// rgba.
+struct PackedColour {
+  std::size_t column = 0;
+  bool as_float = false;  // the row holds the float that has these bits, not the number
+
+  // Into the row's last three values.
+  void Unpack(std::vector<double>& row) const {
+    const double value = row[column], most = as_float ? std::numeric_limits<float>::max() : 4294967295.0;
+    std::uint32_t bits = 0;
+    if (std::abs(value) <= most)
+      bits = as_float ? std::bit_cast<std::uint32_t>(static_cast<float>(value))
+                      : static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+    for (std::size_t i = 0; i < 3; ++i) row[row.size() - 1 - i] = bits >> 8 * i & 255;
+  }
+};
+
 // The values of a point. A field of COUNT n is n of them, all but the first without a name.
 struct Values {
   std::vector<std::string_view> names;  // of the header's words
   std::vector<Scalar> types;
+  std::vector<std::size_t> field_bytes;  // of each field, all its values together
+  std::optional<PackedColour> colour{};  // then three names more, of the colours
 };
 
 struct Header {
@@ -29,24 +52,30 @@ struct Header {
 
 Header ReadHeader(std::string_view bytes, const std::string& name) {
   Header header;
-  Lines lines(bytes);
+  Lines lines = Lines::OfFile(bytes);
+  FaultList faults(name);
   std::vector<std::string_view> words;
   while (const auto line = lines.Next()) {
     SplitWords(*line, words);
     if (words.empty() || words.front().starts_with('#')) continue;
-    const std::string where = name + ":" + std::to_string(lines.number()), key(words.front());
+    const std::string where = name + ":" + std::to_string(lines.number());
+    const std::string key(words.front() == "COLUMNS" ? "FIELDS" : words.front());  // up to version 0.6
     static const std::vector<std::string> kKeys{"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
                                                 "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
-    if (std::ranges::find(kKeys, key) == kKeys.end())
-      throw InputError(where, "not a line of a PCD header", "VERSION, FIELDS, SIZE, TYPE, ... DATA", Quoted(key));
-    if (!header.entries.try_emplace(key, words.begin() + 1, words.end()).second)
-      throw InputError(where, key + " is there twice");
+    faults.Try([&] {
+      if (std::ranges::find(kKeys, key) == kKeys.end())
+        throw InputError(where, "not a line of a PCD header", "VERSION, FIELDS, SIZE, TYPE, ... DATA", Quoted(key));
+      if (!header.entries.try_emplace(key, words.begin() + 1, words.end()).second)
+        throw InputError(where, key + " is there twice");
+    });
     header.where[key] = where;
     if (key != "DATA") continue;
+    faults.ThrowIfAny();
     header.lines = lines.number();
     header.data_at = lines.at();
     return header;
   }
+  faults.ThrowIfAny();
   throw InputError(name, "the header does not end", "a line DATA");
 }
 
@@ -91,8 +120,15 @@ Values ReadValues(const Header& header, std::size_t most, const std::string& nam
                        std::to_string(count));
     values.names.resize(values.names.size() + count);
     values.names[values.types.size()] = fields[i];
-    values.types.resize(values.names.size(), TypeOf(header.where.at("TYPE"), types[i], sizes[i]));
+    const Scalar type = TypeOf(header.where.at("TYPE"), types[i], sizes[i]);
+    values.types.resize(values.names.size(), type);
+    values.field_bytes.push_back(count * SizeOf(type));
   }
+  for (std::size_t i = 0; i < values.types.size() && !values.colour; ++i)
+    if ((values.names[i] == "rgb" || values.names[i] == "rgba") && SizeOf(values.types[i]) == 4)
+      values.colour = PackedColour{.column = i, .as_float = !IsWhole(values.types[i])};
+  if (std::ranges::find(values.names, "red") != values.names.end()) values.colour.reset();
+  if (values.colour) values.names.insert(values.names.end(), {"red", "green", "blue"});
   return values;
 }
 
@@ -109,44 +145,94 @@ std::size_t Points(const Header& header, const std::string& name) {
   return points;
 }
 
-void ReadAscii(std::string_view data, const Header& header, const std::string& name, std::size_t points,
-               const Columns& columns, std::vector<double>& row, CloudFile& file) {
+void ReadAscii(std::string_view data, const Header& header, const Values& values, const std::string& name,
+               std::size_t points, Columns& columns, CloudFile& file) {
+  std::vector<double> row(values.names.size());
   Lines lines(data);
+  FaultList faults(name);
   std::vector<std::string_view> words;
   std::size_t count = 0;
   while (const auto line = lines.Next()) {
     SplitWords(*line, words);
     if (words.empty()) continue;
     const std::string where = name + ":" + std::to_string(header.lines + lines.number());
-    if (++count > points) throw InputError(where, "more points than the header says", std::to_string(points));
-    if (words.size() != row.size())
-      throw InputError(where, "another number of values than fields", std::to_string(row.size()),
-                       std::to_string(words.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const auto number = ToNumber<double>(words[i]);
-      if (!number) throw InputError(where, "no number", "", Quoted(words[i]));
-      row[i] = *number;
-    }
-    columns.Add(row, file);
+    faults.Try([&] {
+      if (++count > points) throw InputError(where, "more points than the header says", std::to_string(points));
+      if (words.size() != values.types.size())
+        throw InputError(where, "another number of values than fields", std::to_string(values.types.size()),
+                         std::to_string(words.size()));
+      for (std::size_t i = 0; i < words.size(); ++i) {
+        const auto number = ToNumber<double>(words[i]);
+        if (!number) throw InputError(where, "no number", "", Quoted(words[i]));
+        row[i] = *number;
+      }
+      if (values.colour) values.colour->Unpack(row);
+      columns.Add(row, file);
+    });
   }
-  if (count < points)
-    throw InputError(name + ":" + std::to_string(header.lines + lines.number()), "the file ends early",
-                     std::to_string(points) + " points", std::to_string(count));
+  faults.Try([&] {
+    if (count < points)
+      throw InputError(name + ":" + std::to_string(header.lines + lines.number()), "the file ends early",
+                       std::to_string(points) + " points", std::to_string(count));
+  });
+  faults.ThrowIfAny();
 }
 
-void ReadBinary(BinaryReader reader, const std::vector<Scalar>& types, std::size_t points, const Columns& columns,
-                std::vector<double>& row, CloudFile& file) {
+std::size_t Size(const Values& values) {
   std::size_t size = 0;
-  for (const Scalar type : types) size += SizeOf(type);
-  if (points > reader.left() / size || reader.left() != points * size)
+  for (const std::size_t bytes : values.field_bytes) size += bytes;
+  return size;
+}
+
+void ReadBinary(BinaryReader reader, Values values, std::size_t points, const std::string& name, Columns& columns,
+                CloudFile& file) {
+  std::vector<double> row(values.names.size());
+  if (values.colour) {
+    values.types[values.colour->column] = Scalar::kUint32;
+    values.colour->as_float = false;
+  }
+  const std::size_t size = Size(values);
+  if (points > reader.left() / size)
     throw InputError(reader.Where(), "not as many bytes as the header says",
                      std::to_string(points) + " points of " + std::to_string(size),
                      std::to_string(reader.left()) + " bytes");
+  // PCL up to 1.8 writes zeros there.
+  if (reader.left() > points * size) file.warnings.push_back(BytesBehind(name, reader.left() - points * size));
   file.cloud.positions.reserve(points);
   for (std::size_t i = 0; i < points; ++i) {
-    for (std::size_t j = 0; j < types.size(); ++j) row[j] = reader.Read(types[j]);
+    for (std::size_t j = 0; j < values.types.size(); ++j) row[j] = reader.Read(values.types[j]);
+    if (values.colour) values.colour->Unpack(row);
     columns.Add(row, file);
   }
+}
+
+// DATA binary_compressed: the sizes of what comes, compressed and not, then the points' fields in LZF: all points'
+// first field, all points' second, and so on. Gives the bytes as DATA binary has them, point by point.
+std::string Decompressed(BinaryReader reader, std::string_view rest, const Header& header, const Values& values,
+                         std::size_t points, const std::string& name, CloudFile& file) {
+  constexpr std::size_t kHead_bytes = 8;
+  const auto compressed = static_cast<std::size_t>(reader.Read(Scalar::kUint32));
+  const std::string where = reader.Where();
+  const auto whole = static_cast<std::size_t>(reader.Read(Scalar::kUint32));
+  if (compressed > reader.left())
+    throw InputError(reader.Where(), "the file ends within the compressed data", std::to_string(compressed) + " bytes",
+                     std::to_string(reader.left()));
+  const std::size_t size = Size(values);
+  if (points != whole / size || whole % size != 0)
+    throw InputError(where, "not as many bytes as the header says",
+                     std::to_string(points) + " points of " + std::to_string(size), std::to_string(whole) + " bytes");
+  if (reader.left() > compressed) file.warnings.push_back(BytesBehind(name, reader.left() - compressed));
+  const std::string by_field =
+      DecompressLzf(rest.substr(kHead_bytes, compressed), whole, header.data_at + kHead_bytes, name);
+  std::string by_point(by_field.size(), '\0');
+  std::size_t from = 0, place = 0;
+  for (const std::size_t bytes : values.field_bytes) {
+    for (std::size_t i = 0; i < points; ++i, from += bytes)
+      std::copy_n(by_field.begin() + static_cast<std::ptrdiff_t>(from), bytes,
+                  by_point.begin() + static_cast<std::ptrdiff_t>(i * size + place));
+    place += bytes;
+  }
+  return by_point;
 }
 
 }  // namespace
@@ -155,17 +241,26 @@ CloudFile ParsePcd(std::string_view bytes, const std::string& name) {
   const Header header = ReadHeader(bytes, name);
   const Values values = ReadValues(header, bytes.size(), name);
   const std::size_t points = Points(header, name);
-  const Columns columns(values.names, header.where.at("FIELDS"));
-  std::vector<double> row(values.types.size());
+  Columns columns(values.names, header.where.at("FIELDS"));
   CloudFile file;
   const std::string& data = Words(header, "DATA", 1, name)[0];
   const std::string_view rest = bytes.substr(header.data_at);
-  if (data == "ascii")
-    ReadAscii(rest, header, name, points, columns, row, file);
-  else if (data == "binary")
-    ReadBinary({rest, std::endian::little, header.data_at, name}, values.types, points, columns, row, file);
-  else
-    throw InputError(header.where.at("DATA"), "these data are not read", "ascii or binary", Quoted(data));
+  const auto reader = [&](std::string_view part) {
+    return BinaryReader(part, std::endian::little, header.data_at, name);
+  };
+  if (data == "ascii") {
+    ReadAscii(rest, header, values, name, points, columns, file);
+  } else if (data == "binary") {
+    ReadBinary(reader(rest), values, points, name, columns, file);
+  } else if (data == "binary_compressed") {
+    const std::string by_point = Decompressed(reader(rest), rest, header, values, points, name, file);
+    ReadBinary(reader(by_point), values, points, name, columns, file);
+  } else {
+    throw InputError(header.where.at("DATA"), "these data are not read", "ascii, binary or binary_compressed",
+                     Quoted(data));
+  }
+  const std::optional<std::size_t> colour = columns.colour();
+  columns.GiveColours(file, colour && (*colour >= values.types.size() || IsWhole(values.types[*colour])));
   return file;
 }
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "robot/types/error.h"
+#include "robot/types/fault_list.h"
 #include "tools/cloud/cloud_file.h"
 #include "tools/cloud/columns.h"
 #include "tools/cloud/scalar.h"
@@ -70,7 +71,8 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, const std::strin
     if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian")
       throw InputError(where, "no such format", "ascii, binary_little_endian or binary_big_endian", Quoted(words[1]));
   } else if (words[0] == "element") {
-    header.elements.push_back(ReadElement(words, where));
+    header.elements.emplace_back();  // also where the line is refused: the properties after it are its own
+    header.elements.back() = ReadElement(words, where);
   } else if (words[0] == "property" && !header.elements.empty()) {
     header.elements.back().properties.push_back(ReadProperty(words, where));
   } else {
@@ -81,18 +83,23 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, const std::strin
 }
 
 Header ReadHeader(std::string_view bytes, const std::string& name) {
-  Lines lines(bytes);
+  Lines lines = Lines::OfFile(bytes);
   if (lines.Next() != "ply") throw InputError(name + ":1", "not a PLY file", "ply");
   Header header{.name = name};
+  FaultList faults(name);
   std::vector<std::string_view> words;
   while (const auto line = lines.Next()) {
     SplitWords(*line, words);
-    if (ReadHeaderLine(words, name + ":" + std::to_string(lines.number()), header)) continue;
+    bool more = true;
+    faults.Try([&] { more = ReadHeaderLine(words, name + ":" + std::to_string(lines.number()), header); });
+    if (more) continue;
+    faults.ThrowIfAny();
     if (header.format.empty()) throw InputError(name, "the header has no line format");
     header.lines = lines.number();
     header.data_at = lines.at();
     return header;
   }
+  faults.ThrowIfAny();
   throw InputError(name, "the header does not end", "end_header");
 }
 
@@ -103,7 +110,8 @@ class Rows {
   virtual std::size_t Left() const = 0;                           // bytes
   virtual std::size_t Least(const Property& property) const = 0;  // bytes it takes
   virtual void Read(const Element& element, std::vector<double>& row) = 0;
-  virtual void Finish() = 0;
+  virtual bool CanGoOn() const = 0;     // with the next row, after one that was refused
+  virtual std::size_t Finish() = 0;  // bytes behind the data, for which the format has no use
 };
 
 class TextRows : public Rows {
@@ -114,7 +122,8 @@ class TextRows : public Rows {
 
   void Read(const Element& element, std::vector<double>& row) override {
     NextLine();
-    if (words_.empty()) throw InputError(Where(), "the file ends early", "another " + Quoted(element.name));
+    ended_ = words_.empty();
+    if (ended_) throw InputError(Where(), "the file ends early", "another " + Quoted(element.name));
     std::size_t at = 0;
     for (std::size_t i = 0; i < row.size(); ++i) {
       row[i] = Number(at++);
@@ -128,9 +137,11 @@ class TextRows : public Rows {
       throw InputError(Where(), "another number of values than properties", std::to_string(at),
                        std::to_string(words_.size()));
   }
-  void Finish() override {
+  bool CanGoOn() const override { return !ended_; }
+  std::size_t Finish() override {
     NextLine();
     if (!words_.empty()) throw InputError(Where(), "more data than the header says");
+    return 0;
   }
 
  private:
@@ -153,6 +164,7 @@ class TextRows : public Rows {
   Lines lines_;
   const Header& header_;
   std::vector<std::string_view> words_;
+  bool ended_ = false;
 };
 
 class BinaryRows : public Rows {
@@ -173,11 +185,8 @@ class BinaryRows : public Rows {
       row[i] = std::nan("");
     }
   }
-  void Finish() override {
-    if (reader_.left() > 0)
-      throw InputError(reader_.Where(), "more data than the header says", "",
-                       std::to_string(reader_.left()) + " bytes");
-  }
+  bool CanGoOn() const override { return false; }
+  std::size_t Finish() override { return reader_.left(); }
 
  private:
   BinaryReader reader_;
@@ -196,25 +205,33 @@ void CheckCount(const Element& element, const Rows& rows) {
 
 CloudFile ReadElements(const Header& header, Rows& rows) {
   CloudFile file;
+  FaultList faults(header.name);
   bool found = false;
   for (const Element& element : header.elements) {
     CheckCount(element, rows);
     std::optional<Columns> columns;
+    std::optional<bool> whole_colours;
     if (element.name == "vertex") {
       if (std::exchange(found, true)) throw InputError(element.where, "the element 'vertex' is there twice");
       std::vector<std::string_view> names;
       for (const Property& property : element.properties)
         names.push_back(property.count_type ? "" : std::string_view(property.name));
       columns.emplace(names, element.where);
+      if (const auto colour = columns->colour()) whole_colours = IsWhole(element.properties[*colour].type);
       file.cloud.positions.reserve(element.count);
     }
     std::vector<double> row(element.properties.size());
     for (std::size_t i = 0; i < element.count; ++i) {
-      rows.Read(element, row);
-      if (columns) columns->Add(row, file);
+      const bool read = faults.Try([&] { rows.Read(element, row); });
+      if (!read && !rows.CanGoOn()) faults.ThrowIfAny();
+      if (read && columns) columns->Add(row, file);
     }
+    if (columns) columns->GiveColours(file, whole_colours);
   }
-  rows.Finish();
+  faults.Try([&] {
+    if (const std::size_t more = rows.Finish(); more > 0) file.warnings.push_back(BytesBehind(header.name, more));
+  });
+  faults.ThrowIfAny();
   if (!found) throw InputError(header.name, "no points in it", "an element 'vertex'");
   return file;
 }

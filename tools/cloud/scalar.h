@@ -18,6 +18,13 @@ constexpr std::size_t SizeOf(Scalar type) {
   return kSizes[static_cast<std::size_t>(type)];
 }
 
+constexpr bool IsWhole(Scalar type) { return type != Scalar::kFloat && type != Scalar::kDouble; }
+
+// For a warning.
+inline std::string BytesBehind(const std::string& name, std::size_t count) {
+  return name + ": " + std::to_string(count) + " bytes behind the data that its header tells of are not read";
+}
+
 class BinaryReader {
  public:
   // offset: where in the file the data begin, for what is thrown.

@@ -8,12 +8,20 @@
 #include <string_view>
 #include <vector>
 
+#include "robot/types/text_fields.h"
+
 namespace merlin::cloud_text {
 
 // Lines one by one, without their ends (\n or \r\n), counted from 1.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text) {}
+  // Of a file from its first byte on: a byte-order mark belongs to no line.
+  static Lines OfFile(std::string_view bytes) {
+    Lines lines(bytes);
+    lines.at_ = bytes.size() - WithoutByteOrderMark(bytes).size();
+    return lines;
+  }
   std::optional<std::string_view> Next() {
     if (at_ >= text_.size()) return std::nullopt;
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
@@ -50,13 +58,23 @@ inline void SplitWords(std::string_view line, std::vector<std::string_view>& wor
   }
 }
 
+// A separator within a field's "quotes" separates nothing.
 inline void SplitAt(char separator, std::string_view line, std::vector<std::string_view>& fields) {
   fields.clear();
   for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(separator, begin), line.size());
+    std::size_t end = std::min(line.find(separator, begin), line.size());
+    if (Trim(line.substr(begin, end - begin)).starts_with('"')) {
+      const std::size_t closing = line.find('"', line.find('"', begin) + 1);
+      if (closing != std::string_view::npos) end = std::min(line.find(separator, closing), line.size());
+    }
     fields.push_back(Trim(line.substr(begin, end - begin)));
     begin = end + 1;
   }
+}
+
+inline std::string_view WithoutQuotes(std::string_view field) {
+  return field.size() >= 2 && field.front() == '"' && field.back() == '"' ? Trim(field.substr(1, field.size() - 2))
+                                                                          : field;
 }
 
 // The whole text as a number; nan and inf are numbers.
@@ -67,14 +85,6 @@ std::optional<Number> ToNumber(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return number;
-}
-
-// For a message: short, and nothing that a terminal would obey.
-inline std::string Quoted(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string quoted = "'";
-  for (const char c : text.substr(0, kLongest)) quoted += c >= ' ' && c <= '~' ? c : '?';
-  return quoted + (text.size() > kLongest ? "...'" : "'");
 }
 
 }  // namespace merlin::cloud_text

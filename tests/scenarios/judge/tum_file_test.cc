@@ -52,8 +52,8 @@ TEST(TumFile, TakesExponentsTabsWindowsLinesAndNoLastNewline) {
 TEST(TumFile, RefusesWithTheLine) {
   ExpectRefused("", "t.tum: no poses");
   ExpectRefused("# nothing\n\n", "t.tum: no poses");
-  ExpectRefused(kTwo + "2.000000001 4 5 6 0 0 0 1\n", "t.tum:4: the stamp does not come after the one before it");
-  ExpectRefused(kTwo + "1.9 4 5 6 0 0 0 1\n", "t.tum:4: the stamp");
+  ExpectRefused(kTwo + "1.9 4 5 6 0 0 0 1\n",
+                "t.tum:4: the stamp comes before the one above it; expected 2.000000001 s");
   ExpectRefused(kTwo + "3 4 5 6 0 0 0\n", "t.tum:4: the line ends before the quaternion");
   ExpectRefused(kTwo + "3 4 5 6 0 0 0 1 9\n", "t.tum:4: more fields");
   ExpectRefused(kTwo + "3,4,5,6,0,0,0,1\n", "t.tum:4: the stamp; expected a number");
@@ -62,6 +62,29 @@ TEST(TumFile, RefusesWithTheLine) {
   ExpectRefused(kTwo + "3 4 5 6 0 0 nan 1\n", "t.tum:4: the quaternion");
   ExpectRefused(kTwo + "3 4 5 6 0 0 0 0\n", "t.tum:4: a quaternion of no length");
   ExpectRefused(kTwo + "1e12 4 5 6 0 0 0 1\n", "t.tum:4: the stamp");
+}
+
+TEST(TumFile, NamesEveryFaultAtOnce) {
+  ExpectRefused(kTwo + "3 4 5\n1 4 5 6 0 0 0 1\nx\n4 4 5 6 0 0 0 1 1\n",
+                "t.tum:4: the line ends before the position\n"
+                "t.tum:5: the stamp comes before the one above it; expected "
+                "2.000000001 s or more, got 1.000000000 s\nt.tum:6: the stamp; expected a number between -9e+09 and "
+                "9e+09, got 'x'\nt.tum:7: more fields than");
+}
+
+TEST(TumFile, IgnoresAByteOrderMark) {
+  for (const std::string& text : {kTwo, kTwo.substr(kTwo.find('\n') + 1)}) {
+    const TumFile file = ParseTum("\xEF\xBB\xBF" + text, "t.tum");
+    EXPECT_EQ(ToTum(file.trajectory), ToTum(ParseTum(kTwo, "t.tum").trajectory));
+    EXPECT_TRUE(file.warnings.empty());
+  }
+}
+
+TEST(TumFile, TakesEqualStampsWithAWarning) {
+  const TumFile file = ParseTum(kTwo + "2.000000001 4 5 7 0 0 0 1\n2.000000001 4 5 8 0 0 0 1\n", "t.tum");
+  EXPECT_EQ(file.trajectory.size(), 4u);
+  EXPECT_EQ(file.warnings, std::vector<std::string>{"t.tum: 2 stamps are that of the pose above; all its poses are "
+                                                    "taken, and paired as evo does (lines 4, 5)"});
 }
 
 TEST(TumFile, NamesQuaternionsOffUnitLength) {
@@ -118,10 +141,17 @@ TEST(PairAtNearestStamps, PairsEachOfTheShorterWithTheNearest) {
   EXPECT_EQ(Paired({1}, {}, 5), Indices{});
 }
 
-TEST(PairAtNearestStamps, GivesAPoseToTheNearestOfThoseThatWantIt) {
-  EXPECT_EQ(Paired({0, 100, 200}, {97, 102}, 20), (Indices{{1, 1}}));
-  EXPECT_EQ(Paired({0, 100, 200}, {98, 102}, 20), (Indices{{1, 0}}));  // as near: the earlier
-  EXPECT_EQ(Paired({0, 100, 200, 300}, {95, 99, 104}, 20), (Indices{{1, 1}}));
+TEST(PairAtNearestStamps, GivesAPoseToAllThatAreNearestToIt) {
+  EXPECT_EQ(Paired({0, 100, 200}, {97, 102}, 20), (Indices{{1, 0}, {1, 1}}));
+  EXPECT_EQ(Paired({0, 100, 200, 300}, {95, 99, 104}, 20), (Indices{{1, 0}, {1, 1}, {1, 2}}));
+}
+
+// By hand after numpy's searchsorted(side="right"), which evo 1.38 calls.
+TEST(PairAtNearestStamps, TakesOfEqualStampsTheOneThatEvoTakes) {
+  EXPECT_EQ(Paired({0, 10, 10, 20, 30}, {9, 10, 11}, 5), (Indices{{1, 0}, {2, 1}, {2, 2}}));
+  EXPECT_EQ(Paired({10, 10, 10, 10}, {8, 10, 12}, 5), (Indices{{0, 0}, {2, 1}, {3, 2}}));  // evo's rule at the end
+  EXPECT_EQ(Paired({0, 10, 20, 30}, {10, 10, 12}, 5), (Indices{{1, 0}, {1, 1}, {1, 2}}));
+  EXPECT_EQ(Paired({1000, 1000}, {0, 875, 1125, 2000}, 500), (Indices{{0, 1}, {1, 1}}));
 }
 
 }  // namespace

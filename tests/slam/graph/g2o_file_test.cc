@@ -110,13 +110,62 @@ TEST(G2oFile, RefusesWithTheLine) {
   ExpectRefused(kPlanar + "EDGE_SE2 10 2.5 1 0 0 1 0 0 1 0 1\n",
                 "f.g2o:10: the second pose's id; expected a whole number, got '2.5'");
   ExpectRefused(kPlanar + "EDGE_SE2 10 99999999999999999999 1 0 0 1 0 0 1 0 1\n", "f.g2o:10: the second pose's id");
-  ExpectRefused(kPlanar + "VERTEX_SE2 40 1 1 1\n", "f.g2o:10: no chain of edges joins pose 40 to pose 10");
   ExpectRefused(kPlanar + kSpatial, "f.g2o:10: planar (SE2) and spatial (SE3)");
   ExpectRefused("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 0\n", "f.g2o:1: a quaternion of no length");
-  ExpectRefused("EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 2 3 1 0 0 1 0 0 1 0 1\n",
-                "f.g2o:2: no chain of edges joins pose 2");
+  ExpectRefused("FIX 5\nFIX 0 1\nEDGE_SE2 5 6 1 0 0 1 0 0 1 0 1\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n",
+                "f.g2o:2: more than one FIX");
   ExpectRefused("FIX 0 1\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n", "f.g2o:1: more than one FIX");
   ExpectRefused(std::string(1000, 'x') + "\xff\x01", "f.g2o:1: unknown tag");
+}
+
+// Each fault with its line, and no pose called missing because its own line is wrong.
+TEST(G2oFile, NamesEveryFaultAtOnce) {
+  try {
+    ParseG2o(
+        "VERTEX_SE2 1 0 0 0\nVERTEX_SE2 2 x 0 0\nVERTEX_SE2 1 0 0 0\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0\n"
+        "EDGE_SE2 2 7 1 0 0 1 0 0 1 0 1\nFIX 8\nEDGE_SE9 1 2\n",
+        "f");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "f:2: x; expected a number between -1e+09 and 1e+09, got 'x'\n"
+                 "f:4: the line ends before the information matrix\n"
+                 "f:7: unknown tag; expected EDGE_SE2 or another of g2o's poses and edges, got 'EDGE_SE9'\n"
+                 "f:3: pose 1 again; it is in line 1 already\nf:5: there is no pose 7\nf:6: there is no pose 8");
+  }
+  try {
+    ParseG2o("VERTEX_SE2 one 0 0 0\nVERTEX_SE2 2 0 0 0\nEDGE_SE2 1 2 1 0 0 1 0 0 1 0 1\n", "f");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "f:1: the pose's id; expected a whole number, got 'one'");
+  }
+  std::string many;
+  for (int i = 0; i < 20; ++i) many += "EDGE_SE2 1 1\n";
+  ExpectRefused(many, "f.g2o:12: an edge from a pose to itself\nf.g2o: and 8 more");
+}
+
+TEST(G2oFile, IgnoresParametersThatNoEdgeUses) {
+  for (const char* parameters :
+       {"PARAMS_SE3OFFSET 0 0 0 0 0 0 0 1\n", "PARAMS_SE2OFFSET 0 1 2 3\nPARAMS_CAMERACALIB 1 x nan\n", "PARAMS_\n"}) {
+    EXPECT_EQ(ToG2o(ParseG2o(parameters + kPlanar, "f")), ToG2o(ParseG2o(kPlanar, "f")));
+    EXPECT_EQ(ToG2o(ParseG2o(kSpatial + parameters, "f")), ToG2o(ParseG2o(kSpatial, "f")));
+    EXPECT_TRUE(ParseG2o(kSpatial + parameters, "f").warnings.empty());
+  }
+  ExpectRefused("PARAMS_SE3OFFSET 0 1 0 0 0 0 0 1\n" + kSpatial + "EDGE_SE3_OFFSET 0 1 0 0 1 2 3 0 0 0 1" + kUnit,
+                "f.g2o:5: an edge that uses a PARAMS line, which is not supported");
+  ExpectRefused("PARAMS_SE3OFFSET 0 0 0 0 0 0 0 1\n", "no edges");
+}
+
+TEST(G2oFile, WarnsOnceOfPartsThatNoEdgeJoins) {
+  const std::string first = "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n", second = "EDGE_SE2 5 6 2 0 0 1 0 0 1 0 1\n";
+  G2oFile file = ParseG2o(first + second + "FIX 1\nFIX 6\n", "f");
+  EXPECT_EQ(file.warnings, std::vector<std::string>{"f: the graph has 2 parts that no edge joins; each is solved by "
+                                                    "itself, about its FIX or its first pose"});
+  const double x_m[] = {-1.0, 0.0, -2.0, 0.0};  // chained from each part's own FIX
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(file.graph.poses[i].translation(), Eigen::Vector3d(x_m[i], 0, 0));
+  file = ParseG2o("\xEF\xBB\xBF" + kPlanar + "VERTEX_SE2 40 1 1 1\n", "f");
+  ASSERT_EQ(file.warnings.size(), 1u);
+  EXPECT_TRUE(file.warnings[0].ends_with("(1 of one pose, which stays)")) << file.warnings[0];
 }
 
 // Whatever ids a file has, memory goes by what is in it.
