@@ -31,14 +31,14 @@ Robust ScaledCovariance(double chi2, double phi) {
 }
 
 template <class Group>
-class Problem {
+class GraphProblem {
  public:
   using State = typename Group::State;
   using Matrix = typename Group::Matrix;
   using Vector = typename Group::Vector;
   static constexpr int kSize = Group::kSize;
 
-  Problem(const PoseGraph& graph, const OptimizeConfig& config, Objective objective)
+  GraphProblem(const PoseGraph& graph, const OptimizeConfig& config, Objective objective)
       : graph_(graph),
         config_(config),
         rotation_(PlanarRotationIn(objective)),
@@ -217,8 +217,8 @@ class Problem {
 
 OptimizeResult Optimize(const PoseGraph& graph, const OptimizeConfig& config, Objective objective,
                         const std::atomic<bool>* stop) {
-  if (graph.planar) return Problem<Planar>(graph, config, objective).Solve(stop);
-  return Problem<Spatial>(graph, config, objective).Solve(stop);
+  if (graph.planar) return GraphProblem<Planar>(graph, config, objective).Solve(stop);
+  return GraphProblem<Spatial>(graph, config, objective).Solve(stop);
 }
 
 }  // namespace merlin

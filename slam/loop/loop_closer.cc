@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeastWay_m = 0.01;     // of a turn on the spot
 constexpr double kSameKeyframe_m = 0.3;  // so soon after the newest key frame a loop is one of it
 
-Matrix6d Information(double sigma_m, double sigma_rad) {
+Matrix6d DiagonalInformation(double sigma_m, double sigma_rad) {
   Vector6d sigma;
   sigma << sigma_m, sigma_m, sigma_m, sigma_rad, sigma_rad, sigma_rad;
   return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
@@ -26,7 +26,7 @@ GraphEdge EdgeOf(std::span<const Keyframe> keyframes, const Loop& loop, const Po
   const Pose T_base_newest = T_map_base.inverse() * keyframes.back().T_map_base;
   GraphEdge edge{.from = loop.former, .to = keyframes.size() - 1};
   edge.T_from_to = keyframes[loop.former].T_map_base.inverse() * loop.T_map_base * T_base_newest;
-  const Matrix6d least = Information(config.loop_sigma_m, config.loop_sigma_rad).inverse();
+  const Matrix6d least = DiagonalInformation(config.loop_sigma_m, config.loop_sigma_rad).inverse();
   const Matrix6d adjoint = Adjoint(T_base_newest.inverse());
   edge.information = (adjoint * loop.covariance * adjoint.transpose() + least).inverse();
   return edge;
@@ -90,7 +90,7 @@ PoseGraph LoopCloser::Network(std::span<const Keyframe> keyframes) const {
     if (i == 0) continue;
     const double root = std::sqrt(std::max(keyframe.path_m - keyframes[i - 1].path_m, kLeastWay_m));
     network.edges.push_back({i - 1, i, keyframe.T_previous_base,
-                             Information(config_.path_sigma_m_per_sqrt_m * root, config_.turn_sigma_rad_per_sqrt_m * root)});
+                             DiagonalInformation(config_.path_sigma_m_per_sqrt_m * root, config_.turn_sigma_rad_per_sqrt_m * root)});
     if (!keyframe.yaw_rad) continue;
     Matrix6d heading = Matrix6d::Zero();
     heading(5, 5) = 1.0 / (std::pow(config_.heading_sigma_rad, 2) + std::pow(keyframe.yaw_sigma_rad, 2));

@@ -9,7 +9,7 @@
 namespace merlin {
 namespace {
 
-CarDescription Car() {
+CarDescription CarWithMotor() {
   CarDescription car;
   car.drivetrain.voltage_max_v = 12.0;
   car.drivetrain.motor_constant_v_s = 0.05;
@@ -22,7 +22,7 @@ DriveState At(double t_s, double battery_v, double current_a = 0.0, std::int64_t
   return {.stamp = FromSeconds(t_s), .encoder_counts = counts, .current_a = current_a, .battery_v = battery_v};
 }
 
-// A battery of 12 V and 0.1 ohm that feeds the motor of Car() through a bridge, solved by hand the other way round:
+// A battery of 12 V and 0.1 ohm that feeds the motor of CarWithMotor() through a bridge, solved by hand the other way round:
 // from the duty to what the state says.
 TEST(RestVoltage, IsThatOfTheBatteryBeforeItsResistance) {
   const double emf_v = 100.0 * 0.05;
@@ -30,14 +30,14 @@ TEST(RestVoltage, IsThatOfTheBatteryBeforeItsResistance) {
     // V = 12 - 0.1 duty I, I = (duty V - emf) / 0.5
     const double battery_v = (12.0 + 0.1 * duty * emf_v / 0.5) / (1.0 + 0.1 * duty * duty / 0.5);
     const double current_a = (duty * battery_v - emf_v) / 0.5;
-    EXPECT_NEAR(RestVoltage_v(At(0.0, battery_v, current_a), 100.0, Car().drivetrain, 0.1), 12.0, 1e-9) << duty;
+    EXPECT_NEAR(RestVoltage_v(At(0.0, battery_v, current_a), 100.0, CarWithMotor().drivetrain, 0.1), 12.0, 1e-9) << duty;
   }
-  EXPECT_DOUBLE_EQ(RestVoltage_v(At(0.0, 0.0, 3.0), 0.0, Car().drivetrain, 0.1), 0.0);
-  EXPECT_TRUE(std::isfinite(RestVoltage_v(At(0.0, 1e-300, 3.0), 0.0, Car().drivetrain, 0.1)));
+  EXPECT_DOUBLE_EQ(RestVoltage_v(At(0.0, 0.0, 3.0), 0.0, CarWithMotor().drivetrain, 0.1), 0.0);
+  EXPECT_TRUE(std::isfinite(RestVoltage_v(At(0.0, 1e-300, 3.0), 0.0, CarWithMotor().drivetrain, 0.1)));
 }
 
 EnergyLevel After(double battery_v, double current_a, double seconds, const EnergyConfig& config = {}) {
-  Energy energy(Car(), config);
+  Energy energy(CarWithMotor(), config);
   energy.Update(At(0.0, 12.5));
   energy.Update(At(0.02, 12.5));
   for (int i = 2; i * 0.02 <= seconds; ++i) energy.Update(At(i * 0.02, battery_v, current_a));
@@ -59,7 +59,7 @@ TEST(Energy, TakesNeitherADipNorTheSagUnderLoadForAnEmptyBattery) {
 }
 
 TEST(Energy, StaysLowWhenTheVoltageRecovers) {
-  Energy energy(Car(), {.filter_s = 0.0});
+  Energy energy(CarWithMotor(), {.filter_s = 0.0});
   energy.Update(At(0.0, 11.0));
   EXPECT_FALSE(energy.rest_v());
   energy.Update(At(0.02, 11.0));
@@ -70,7 +70,7 @@ TEST(Energy, StaysLowWhenTheVoltageRecovers) {
 }
 
 TEST(Energy, LeavesOutStatesThatAreNotFiniteOrNotNew) {
-  Energy energy(Car(), {.filter_s = 0.0});
+  Energy energy(CarWithMotor(), {.filter_s = 0.0});
   energy.Update(At(1.0, 12.5));
   energy.Update(At(2.0, 12.5));
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -16,7 +16,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // At 20 MHz of contrast 0.45 an amplitude of 2 * 0.45 / 1.45 * 1.5e6 = 931,034 e just fills the fuller tap.
 constexpr double kFullAmplitude_e = 931034.48;
 
-DepthCameraSheet Sheet() {
+DepthCameraSheet LobeSheet() {
   DepthCameraSheet sheet;
   sheet.camera = {.width = 16, .height = 12, .fx_px = 22, .fy_px = 22, .cx_px = 7.5, .cy_px = 5.5};
   sheet.signal_e_m2_per_us = 2000.0;
@@ -32,8 +32,8 @@ DepthCameraSheet Sheet() {
 }
 
 // A facing wall, darker towards the picture's edge (down to a third). The camera's own law: signal ~ T / d^2.
-DepthFrame Wall(double distance_m, double albedo, const DepthSettings& settings) {
-  const DepthCameraSheet sheet = Sheet();
+DepthFrame LobeWall(double distance_m, double albedo, const DepthSettings& settings) {
+  const DepthCameraSheet sheet = LobeSheet();
   DepthFrame frame;
   frame.settings = settings;
   frame.width = sheet.camera.width;
@@ -85,16 +85,16 @@ bool AnySaturated(const DepthFrame& frame) {
 DepthFrame Settled(double distance_m, double albedo, double begin_s, int frames, const IntegrationConfig& config = {}) {
   DepthSettings settings{.integration_s = begin_s};
   for (int i = 0; i < frames; ++i) {
-    settings = Adapt(Wall(distance_m, albedo, settings), Sheet(), kRate_hz, config);
+    settings = Adapt(LobeWall(distance_m, albedo, settings), LobeSheet(), kRate_hz, config);
     EXPECT_GE(settings.integration_s, 100e-6);
     EXPECT_LE(settings.integration_s, 5000e-6);
   }
-  return Wall(distance_m, albedo, settings);
+  return LobeWall(distance_m, albedo, settings);
 }
 
 TEST(IntegrationTime, ShrinksBeforeANearWallUntilNothingSaturates) {
   for (const double distance_m : {0.5, 0.7, 1.0, 1.5}) {
-    EXPECT_TRUE(AnySaturated(Wall(distance_m, 0.8, {.integration_s = 5000e-6}))) << distance_m;
+    EXPECT_TRUE(AnySaturated(LobeWall(distance_m, 0.8, {.integration_s = 5000e-6}))) << distance_m;
     EXPECT_FALSE(AnySaturated(Settled(distance_m, 0.8, 5000e-6, 12))) << distance_m;
   }
 }
@@ -104,7 +104,7 @@ TEST(IntegrationTime, EndsAtTheShortestBeforeAWallTooNearForIt) {
 }
 
 TEST(IntegrationTime, GrowsBeforeAFarWall) {
-  const DepthFrame dark = Wall(4.0, 0.5, {.integration_s = 100e-6});
+  const DepthFrame dark = LobeWall(4.0, 0.5, {.integration_s = 100e-6});
   const DepthFrame settled = Settled(4.0, 0.5, 100e-6, 12);
   EXPECT_GT(settled.settings.integration_s, 20.0 * dark.settings.integration_s);
   EXPECT_EQ(Settled(7.0, 0.1, 100e-6, 12).settings.integration_s, 5000e-6);  // never bright enough
@@ -125,7 +125,7 @@ TEST(IntegrationTime, ReachesTheTargetFromEitherSideAndStays) {
 TEST(IntegrationTime, StepIsWiedemannsRuleWithinItsLimit) {
   const IntegrationConfig config{.target_share = 0.2};
   const auto step = [&](double share) {
-    return Adapt(Even(share * kFullAmplitude_e, 0, 1e-3), Sheet(), kRate_hz, config).integration_s / 1e-3;
+    return Adapt(Even(share * kFullAmplitude_e, 0, 1e-3), LobeSheet(), kRate_hz, config).integration_s / 1e-3;
   };
   EXPECT_NEAR(step(0.15), 1.25, 1e-6);  // dev = (0.20 - 0.15) / 0.20
   EXPECT_NEAR(step(0.25), 0.75, 1e-6);
@@ -137,34 +137,34 @@ TEST(IntegrationTime, StepIsWiedemannsRuleWithinItsLimit) {
 TEST(IntegrationTime, AFewSaturatedPixelsPullDown) {
   DepthFrame frame = Even(0.19 * kFullAmplitude_e, 0, 1e-3);
   frame.flags[3] = kSaturated;
-  EXPECT_LT(Adapt(frame, Sheet(), kRate_hz, {}).integration_s, 1e-3);
+  EXPECT_LT(Adapt(frame, LobeSheet(), kRate_hz, {}).integration_s, 1e-3);
 }
 
 TEST(IntegrationTime, KeepsTheTimeWithoutAUsablePixel) {
-  EXPECT_EQ(Adapt(Empty(7e-4), Sheet(), kRate_hz, {}).integration_s, 7e-4);
-  EXPECT_EQ(Adapt(Even(kNaN, 0, 7e-4), Sheet(), kRate_hz, {}).integration_s, 7e-4);
-  EXPECT_EQ(Adapt(Even(0.0, kInvalid, 7e-4), Sheet(), kRate_hz, {}).integration_s, 7e-4);
-  EXPECT_EQ(Adapt(Even(1e9, kInconsistent, 7e-4), Sheet(), kRate_hz, {}).integration_s, 7e-4);
+  EXPECT_EQ(Adapt(Empty(7e-4), LobeSheet(), kRate_hz, {}).integration_s, 7e-4);
+  EXPECT_EQ(Adapt(Even(kNaN, 0, 7e-4), LobeSheet(), kRate_hz, {}).integration_s, 7e-4);
+  EXPECT_EQ(Adapt(Even(0.0, kInvalid, 7e-4), LobeSheet(), kRate_hz, {}).integration_s, 7e-4);
+  EXPECT_EQ(Adapt(Even(1e9, kInconsistent, 7e-4), LobeSheet(), kRate_hz, {}).integration_s, 7e-4);
 }
 
 TEST(IntegrationTime, LeavesOutPixelsThatAreNoNumbers) {
   DepthFrame frame = Even(0.2 * kFullAmplitude_e, 0, 1e-3);
   frame.amplitude[0] = static_cast<float>(kNaN);
   frame.amplitude[1] = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(Adapt(frame, Sheet(), kRate_hz, {}).integration_s, 1e-3);
+  EXPECT_EQ(Adapt(frame, LobeSheet(), kRate_hz, {}).integration_s, 1e-3);
 }
 
 TEST(IntegrationTime, DarkPixelsThatTheMakersFilterDroppedStillAskForLight) {
-  EXPECT_GT(Adapt(Even(10.0, kLowSignal | kInvalid, 1e-3), Sheet(), kRate_hz, {}).integration_s, 1e-3);
+  EXPECT_GT(Adapt(Even(10.0, kLowSignal | kInvalid, 1e-3), LobeSheet(), kRate_hz, {}).integration_s, 1e-3);
 }
 
 TEST(IntegrationTime, LetsTheFrameEndWithinItsPeriod) {
   // 100 Hz: four sub-frames of 10 ms in all, 1 ms of read-out each; with two frequencies eight, 0.25 ms each.
-  EXPECT_NEAR(Adapt(Even(10.0, 0, 1.4e-3), Sheet(), 100.0, {}).integration_s, 1.5e-3, 1e-12);
+  EXPECT_NEAR(Adapt(Even(10.0, 0, 1.4e-3), LobeSheet(), 100.0, {}).integration_s, 1.5e-3, 1e-12);
   DepthFrame two = Even(10.0, 0, 0.2e-3);
   two.settings.second_frequency_hz = 30e6;
-  EXPECT_NEAR(Adapt(two, Sheet(), 100.0, {}).integration_s, 0.25e-3, 1e-12);
-  EXPECT_EQ(Adapt(two, Sheet(), 1000.0, {}).integration_s, 100e-6);  // nothing fits: the shortest
+  EXPECT_NEAR(Adapt(two, LobeSheet(), 100.0, {}).integration_s, 0.25e-3, 1e-12);
+  EXPECT_EQ(Adapt(two, LobeSheet(), 1000.0, {}).integration_s, 100e-6);  // nothing fits: the shortest
 }
 
 TEST(IntegrationTime, ChangesNothingElse) {
@@ -174,7 +174,7 @@ TEST(IntegrationTime, ChangesNothingElse) {
                     .second_frequency_hz = 20e6,
                     .post_processing = true,
                     .phase_images = true};
-  const DepthSettings adapted = Adapt(frame, Sheet(), 5.0, {});
+  const DepthSettings adapted = Adapt(frame, LobeSheet(), 5.0, {});
   EXPECT_GT(adapted.integration_s, 1e-3);
   EXPECT_EQ(adapted.frequency_hz, 30e6);
   EXPECT_EQ(adapted.second_frequency_hz, 20e6);

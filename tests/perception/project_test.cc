@@ -10,7 +10,7 @@
 namespace merlin {
 namespace {
 
-DepthCameraSheet Sheet() {
+DepthCameraSheet WideSheet() {
   DepthCameraSheet sheet;
   sheet.camera = {.width = 3, .height = 3, .fx_px = 1.0, .fy_px = 1.0, .cx_px = 1.0, .cy_px = 1.0};  // rays at 45 deg
   sheet.signal_e_m2_per_us = 2000.0;
@@ -44,7 +44,7 @@ TEST(Project, PutsPixelsWhereTheirRaysPointInTheBodyFrame) {
   depth.reasons[3] = Rejection::kNone;  // left of it
   depth.reasons[7] = Rejection::kNone;  // below it
   Observation observation;
-  ProjectDepth(depth, Sheet(), PixelRays(Sheet().camera), LookingAhead(0.3, 0.35), observation);
+  ProjectDepth(depth, WideSheet(), PixelRays(WideSheet().camera), LookingAhead(0.3, 0.35), observation);
   ASSERT_EQ(observation.points_base.size(), 3u);
   const float s = std::sqrt(2.0f);  // 2 m along a ray at 45 deg
   EXPECT_TRUE(observation.points_base[0].position.isApprox(Eigen::Vector3f(0.3f + s, s, 0.35f), 1e-6f));
@@ -55,7 +55,7 @@ TEST(Project, PutsPixelsWhereTheirRaysPointInTheBodyFrame) {
 
 TEST(Project, TellsHowFarRaysAreFreeThatAreTooDarkToMeasure) {
   // 900,000 e at 1 m of albedo 1: 0.02 of it falls to 2,000 e at 3 m, and to the sheet's least, 4,500 e, at 2 m.
-  DepthCameraSheet sheet = Sheet();
+  DepthCameraSheet sheet = WideSheet();
   sheet.low_signal_amplitude_e = 4'500.0;
   FilteredDepth depth = Depth();
   depth.frame.settings.integration_s = 1e-3;
@@ -87,7 +87,7 @@ TEST(Project, KeepsSaturatedPixelsAsDirections) {
   FilteredDepth depth = Depth();
   depth.reasons[4] = Rejection::kSaturated;
   Observation observation;
-  ProjectDepth(depth, Sheet(), PixelRays(Sheet().camera), LookingAhead(0.3, 0.35), observation);
+  ProjectDepth(depth, WideSheet(), PixelRays(WideSheet().camera), LookingAhead(0.3, 0.35), observation);
   EXPECT_TRUE(observation.points_base.empty());
   ASSERT_EQ(observation.saturated_base.size(), 1u);
   EXPECT_TRUE(observation.saturated_base[0].isApprox(Eigen::Vector3f::UnitX(), 1e-6f));
@@ -97,7 +97,7 @@ TEST(Project, KeepsSaturatedPixelsAsDirections) {
 TEST(RangeSigma, GivesTheHandComputedMillimetres) {
   for (const auto& [distance_m, sigma_mm] : {std::pair(1.0, 1.9), {2.0, 4.3}, {3.0, 7.4}, {4.0, 11.3}, {5.0, 16.2}, {7.0, 29.1}}) {
     const double amplitude_e = 0.45 * 2000.0 * 0.5 * 1000.0 / (distance_m * distance_m);
-    EXPECT_NEAR(1e3 * RangeSigma(Sheet(), {1e-3, 20e6}).Of_m(amplitude_e), sigma_mm, 0.03 * sigma_mm + 0.05) << distance_m;
+    EXPECT_NEAR(1e3 * RangeSigma(WideSheet(), {1e-3, 20e6}).Of_m(amplitude_e), sigma_mm, 0.03 * sigma_mm + 0.05) << distance_m;
   }
 }
 

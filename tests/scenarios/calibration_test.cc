@@ -28,7 +28,7 @@ class File {
 };
 
 template <class Read>
-std::string Complaint(Read read, const std::string& text) {
+std::string ReadComplaint(Read read, const std::string& text) {
   const File file(text);
   try {
     read(file.path());
@@ -58,7 +58,7 @@ TEST(Drives, AreReadAsTheyAreWritten) {
 
 TEST(Drives, NameWhatIsWrongWithThem) {
   const auto said = [](const std::string& from, const std::string& to) {
-    return Complaint(ReadDrives, Replaced(kGood, from, to));
+    return ReadComplaint(ReadDrives, Replaced(kGood, from, to));
   };
   ExpectSays(said("distance_m", "distanz_m"), "f.yaml:2: straights[0].distanz_m: unknown key; did you mean 'distance_m'?");
   ExpectSays(said("5.003", "-5.003"), "straights[0].distance_m: expected a number in [0.5, 1000], got '-5.003'");
@@ -68,7 +68,7 @@ TEST(Drives, NameWhatIsWrongWithThem) {
   ExpectSays(said("steering_rad: -0.25, ", ""), "circles[1]: missing key 'steering_rad'");
   ExpectSays(said("circles", "circels"), "missing key 'circles'");
   ExpectSays(said("{encoder", "encoder"), "f.yaml:");
-  ExpectSays(Complaint(ReadDrives, ""), "a file of measured drives");
+  ExpectSays(ReadComplaint(ReadDrives, ""), "a file of measured drives");
   EXPECT_THROW(ReadDrives("/no/such/file.yaml"), InputError);
 }
 
@@ -83,7 +83,7 @@ TEST(Calibration, SurvivesBeingWrittenOut) {
 TEST(Calibration, NamesWhatIsWrongWithIt) {
   const std::string good = ToYaml(CarCalibration{});
   const auto said = [&](const std::string& from, const std::string& to) {
-    return Complaint(ReadCalibration, Replaced(good, from, to));
+    return ReadComplaint(ReadCalibration, Replaced(good, from, to));
   };
   ExpectSays(said("wheelbase_m", "wheelbase"), "missing key 'wheelbase_m'");
   ExpectSays(said("wheelbase_m", "wheelbase"), "did you mean 'wheelbase_m'?");

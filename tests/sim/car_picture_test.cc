@@ -11,7 +11,7 @@ constexpr double kDistance_m = 40.0, kFocal_px = 32'000.0;  // 800 pixels a metr
 const CameraModel kFar{
     .width = 640, .height = 480, .fx_px = kFocal_px, .fy_px = kFocal_px, .cx_px = 319.5, .cy_px = 239.5};
 
-std::vector<std::uint8_t> Picture(const World& world, const Pose& T_world_camera) {
+std::vector<std::uint8_t> PictureOf(const World& world, const Pose& T_world_camera) {
   Renderer renderer(world.model(), kFar, Gl::kAuto);
   RenderSnapshot snapshot(world.model());
   snapshot.Take(world.model(), world.data(), T_world_camera, kFar);
@@ -26,8 +26,8 @@ Eigen::AlignedBox2d Silhouette_m(const Eigen::Vector3d& middle, const Eigen::Mat
   T_world_camera.linear() = rotation;
   T_world_camera.translation() = middle - kDistance_m * rotation.col(2);
   const std::string room = Room(kPlane, "<visual><map zfar=\"100\"/></visual>");
-  const auto with = Picture(*MakeWorld(room), T_world_camera);
-  const auto without = Picture(*MakeWorld(room, FromXyYaw(0.0, 90.0, 0.0)), T_world_camera);
+  const auto with = PictureOf(*MakeWorld(room), T_world_camera);
+  const auto without = PictureOf(*MakeWorld(room, FromXyYaw(0.0, 90.0, 0.0)), T_world_camera);
   Eigen::AlignedBox2d box;
   for (int v = 0; v < kFar.height; ++v)
     for (int u = 0; u < kFar.width; ++u) {

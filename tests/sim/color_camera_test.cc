@@ -14,7 +14,7 @@
 namespace merlin::sim {
 namespace {
 
-const CameraModel kCcd{.width = 640, .height = 480, .fx_px = 780.037, .fy_px = 777.844, .cx_px = 353.244, .cy_px = 223.784,
+const CameraModel kThesisCcd{.width = 640, .height = 480, .fx_px = 780.037, .fy_px = 777.844, .cx_px = 353.244, .cy_px = 223.784,
                        .k1 = 0.024, .k2 = 0.015, .p1 = -0.006, .p2 = 0.0109};
 const CameraModel kBarrel{.width = 640, .height = 480, .fx_px = 500.0, .fy_px = 505.0, .cx_px = 310.0, .cy_px = 250.0,
                           .k1 = -0.25, .k2 = 0.05, .p1 = 0.004, .p2 = -0.003};
@@ -102,7 +102,7 @@ class ColorCameraTest : public testing::Test {
 
 TEST_F(ColorCameraTest, PutsMarkersWhereOpenCvsModelProjectsThem) {
   const Pose T_world_camera = CameraAt({1.0, -2.0, 1.5}, {0.2, -0.1, 0.3});
-  for (const CameraModel& model : {kCcd, kBarrel}) {
+  for (const CameraModel& model : {kThesisCcd, kBarrel}) {
     std::string markers;
     std::vector<Eigen::Vector3d> points_camera;
     for (double y = -0.45; y <= 0.46; y += 0.09)

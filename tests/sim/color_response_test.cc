@@ -29,7 +29,7 @@ ColorCameraSheet Perfect() {
   return sheet;
 }
 
-double Linear(int value) {  // IEC 61966-2-1
+double LinearOf(int value) {  // IEC 61966-2-1
   return value <= 10 ? value / 255.0 / 12.92 : std::pow((value / 255.0 + 0.055) / 1.055, 2.4);
 }
 
@@ -46,8 +46,8 @@ struct Statistics {
 // Of the linear light a picture says there was.
 Statistics LinearStatistics(const Picture& bgr) {
   Statistics s;
-  for (const int value : bgr) s.mean += Linear(value) / static_cast<double>(bgr.size());
-  for (const int value : bgr) s.variance += std::pow(Linear(value) - s.mean, 2.0) / static_cast<double>(bgr.size());
+  for (const int value : bgr) s.mean += LinearOf(value) / static_cast<double>(bgr.size());
+  for (const int value : bgr) s.variance += std::pow(LinearOf(value) - s.mean, 2.0) / static_cast<double>(bgr.size());
   return s;
 }
 
@@ -62,7 +62,7 @@ TEST(ColorResponse, HasPoissonsVarianceAndTheReadNoise) {
     for (const double exposure : {0.5, 1.0, 1.5}) {
       const ColorSettings settings{.exposure_s = 0.01 * exposure};
       const Statistics got = LinearStatistics(Exposed(Noisy(), Picture(kValues, static_cast<std::uint8_t>(value)), settings));
-      const double electrons = 400.0 * Linear(value) * exposure;
+      const double electrons = 400.0 * LinearOf(value) * exposure;
       const double variance = (electrons + 25.0) / (400.0 * 400.0);
       const double five_errors = 5.0 * std::sqrt(variance / kValues);
       EXPECT_NEAR(got.mean, electrons / 400.0, five_errors + 2e-4) << value << " " << exposure;  // and a step of the code
@@ -85,7 +85,7 @@ TEST(ColorResponse, ClipsAtTheFullWellAndAtWhite) {
   EXPECT_EQ(Exposed(Perfect(), Picture(kValues, 0), twice), Picture(kValues, 0));
   // White clipped in the well stays below white behind a factor of one half: light is lost, not dimmed.
   const Picture clipped = Exposed(Perfect(), Picture(kValues, 255), {.exposure_s = 0.02, .white_balance_red = 0.5});
-  EXPECT_NEAR(Linear(clipped[2]), 0.5, 0.003);
+  EXPECT_NEAR(LinearOf(clipped[2]), 0.5, 0.003);
   EXPECT_EQ(clipped[1], 255);
 }
 
@@ -93,9 +93,9 @@ TEST(ColorResponse, BalancesRedAndBlueInLinearLight) {
   const ColorSettings settings{.exposure_s = 0.01, .white_balance_red = 2.0, .white_balance_blue = 0.5};
   const Picture bgr = Exposed(Perfect(), Picture(kValues, 100), settings);
   for (std::size_t i = 0; i < kValues; i += 3) {
-    ASSERT_NEAR(Linear(bgr[i]) / Linear(100), 0.5, 0.01) << i;
+    ASSERT_NEAR(LinearOf(bgr[i]) / LinearOf(100), 0.5, 0.01) << i;
     ASSERT_EQ(bgr[i + 1], 100) << i;
-    ASSERT_NEAR(Linear(bgr[i + 2]) / Linear(100), 2.0, 0.015) << i;
+    ASSERT_NEAR(LinearOf(bgr[i + 2]) / LinearOf(100), 2.0, 0.015) << i;
   }
 }
 
@@ -106,8 +106,8 @@ TEST(ColorResponse, FallsOffWithTheFourthPowerOfTheCosine) {
   for (int v = 0; v < kCamera.height; ++v)
     for (int u = 0; u < kCamera.width; ++u) {
       const double x = (u - 60.5) / 150.0, y = (v - 80.25) / 240.0;
-      const double expected = Linear(220) / std::pow(1.0 + x * x + y * y, 2.0);  // cos^2 = 1 / (1 + tan^2)
-      ASSERT_NEAR(Linear(bgr[3 * (static_cast<std::size_t>(v) * 200 + u)]), expected, 0.005) << u << " " << v;
+      const double expected = LinearOf(220) / std::pow(1.0 + x * x + y * y, 2.0);  // cos^2 = 1 / (1 + tan^2)
+      ASSERT_NEAR(LinearOf(bgr[3 * (static_cast<std::size_t>(v) * 200 + u)]), expected, 0.005) << u << " " << v;
     }
 }
 
@@ -131,7 +131,7 @@ TEST(ColorResponse, OfNeighboursAndOfFramesIsUncorrelated) {
   const Statistics s = LinearStatistics(now);
   const auto correlation = [&](const Picture& other, std::size_t step) {
     double sum = 0.0;
-    for (std::size_t i = 0; i + step < kValues; ++i) sum += (Linear(now[i]) - s.mean) * (Linear(other[i + step]) - s.mean);
+    for (std::size_t i = 0; i + step < kValues; ++i) sum += (LinearOf(now[i]) - s.mean) * (LinearOf(other[i + step]) - s.mean);
     return sum / kValues / s.variance;
   };
   const double five_errors = 5.0 / std::sqrt(kValues);

@@ -13,7 +13,7 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kOneDegree = std::numbers::pi / 180.0;
 constexpr double kGravity_m_s2 = 9.81;
 
 int Motor(const World& world) { return mj_name2id(world.model(), mjOBJ_ACTUATOR, "motor"); }
@@ -194,7 +194,7 @@ TEST(DriveServo, StepResponseWaitsForThePulseAndRisesWithTheSlew) {
   DrivetrainConfig config{.steering_backlash_rad = 0.0};
   const auto world = EmptyWorld(config);
   StepFor(*world, 0.502);  // the pulse of 0.500 s has just gone
-  Send(*world, 0.0, 20 * kDegree);
+  Send(*world, 0.0, 20 * kOneDegree);
   while (world->Now() < FromSeconds(0.520)) {
     world->Step();
     EXPECT_NEAR(Read(*world).steering_rad, 0.0, 1e-4) << Seconds(world->Now());
@@ -205,7 +205,7 @@ TEST(DriveServo, StepResponseWaitsForThePulseAndRisesWithTheSlew) {
   StepFor(*world, 0.05);
   EXPECT_NEAR((Read(*world).steering_rad - early_rad) / 0.05, slew_rad_s, 0.05 * slew_rad_s);
   StepFor(*world, 0.2);
-  EXPECT_NEAR(Read(*world).steering_rad, 20 * kDegree, 0.1 * kDegree);
+  EXPECT_NEAR(Read(*world).steering_rad, 20 * kOneDegree, 0.1 * kOneDegree);
 }
 
 double CircleRadius_m(World& world, double steering_rad) {
@@ -229,9 +229,9 @@ TEST(TrueCar, DrivesTheCirclesOfItsOwnWheelbaseAndOffset) {
     config.wheelbase_factor = 1.05;
     config.steering_offset_rad = 0.02;
     const auto world = EmptyWorld(config);
-    const double expected_m = 1.05 * wheelbase_m / std::tan(degrees * kDegree + 0.02);
-    EXPECT_NEAR(CircleRadius_m(*world, degrees * kDegree), expected_m, 0.005 * std::abs(expected_m));
-    EXPECT_NEAR(Read(*world).steering_rad, degrees * kDegree, 0.1 * kDegree);  // the servo does not know
+    const double expected_m = 1.05 * wheelbase_m / std::tan(degrees * kOneDegree + 0.02);
+    EXPECT_NEAR(CircleRadius_m(*world, degrees * kOneDegree), expected_m, 0.005 * std::abs(expected_m));
+    EXPECT_NEAR(Read(*world).steering_rad, degrees * kOneDegree, 0.1 * kOneDegree);  // the servo does not know
   }
 }
 

@@ -11,9 +11,9 @@
 namespace merlin::sim {
 namespace {
 
-const CameraModel kCcd{.width = 640, .height = 480, .fx_px = 780.037, .fy_px = 777.844, .cx_px = 353.244, .cy_px = 223.784,
+const CameraModel kTableCcd{.width = 640, .height = 480, .fx_px = 780.037, .fy_px = 777.844, .cx_px = 353.244, .cy_px = 223.784,
                        .k1 = 0.024, .k2 = 0.015, .p1 = -0.006, .p2 = 0.0109};
-const CameraModel kBarrel{.width = 161, .height = 90, .fx_px = 110.0, .fy_px = 115.0, .cx_px = 75.5, .cy_px = 50.0,
+const CameraModel kOddBarrel{.width = 161, .height = 90, .fx_px = 110.0, .fy_px = 115.0, .cx_px = 75.5, .cy_px = 50.0,
                           .k1 = -0.25, .k2 = 0.05, .p1 = 0.004, .p2 = -0.003};
 
 struct Slope {
@@ -45,7 +45,7 @@ double Pattern(const CameraModel& c, const Slope& s, int channel) {
 }
 
 TEST(Lens, GivesEachPixelWhatLiesAlongItsOwnRay) {
-  for (const CameraModel& camera : {kCcd, kBarrel}) {
+  for (const CameraModel& camera : {kTableCcd, kOddBarrel}) {
     const Lens lens(camera);
     const CameraModel& wide = lens.pinhole();
     EXPECT_FALSE(wide.Distorts());
@@ -84,18 +84,18 @@ TEST(Lens, WithoutDistortionIsNotThere) {
 }
 
 TEST(Lens, KeepsTheDensityOfPixelsAndAsksForNoMoreThanItNeeds) {
-  const Lens lens(kCcd);
-  EXPECT_EQ(lens.pinhole().fx_px, kCcd.fx_px);
-  EXPECT_EQ(lens.pinhole().fy_px, kCcd.fy_px);
+  const Lens lens(kTableCcd);
+  EXPECT_EQ(lens.pinhole().fx_px, kTableCcd.fx_px);
+  EXPECT_EQ(lens.pinhole().fy_px, kTableCcd.fy_px);
   Slope least{1e9, 1e9}, most{-1e9, -1e9};
-  for (int v = 0; v < kCcd.height; ++v)
-    for (int u = 0; u < kCcd.width; ++u) {
-      const Slope s = SlopeOfPixel(kCcd, u, v);
+  for (int v = 0; v < kTableCcd.height; ++v)
+    for (int u = 0; u < kTableCcd.width; ++u) {
+      const Slope s = SlopeOfPixel(kTableCcd, u, v);
       least = {std::min(least.x, s.x), std::min(least.y, s.y)};
       most = {std::max(most.x, s.x), std::max(most.y, s.y)};
     }
-  EXPECT_NEAR(lens.pinhole().width, kCcd.fx_px * (most.x - least.x) + 1.0, 2.0);
-  EXPECT_NEAR(lens.pinhole().height, kCcd.fy_px * (most.y - least.y) + 1.0, 2.0);
+  EXPECT_NEAR(lens.pinhole().width, kTableCcd.fx_px * (most.x - least.x) + 1.0, 2.0);
+  EXPECT_NEAR(lens.pinhole().height, kTableCcd.fy_px * (most.y - least.y) + 1.0, 2.0);
 }
 
 }  // namespace

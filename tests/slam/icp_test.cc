@@ -9,7 +9,7 @@ namespace merlin {
 namespace {
 
 // Points of an open box corner: floor and two walls, each 2 x 2 m, seen from (1, 1, 1). Frame: the corner.
-std::vector<Point> Corner(double sigma_m, std::uint32_t seed, bool floor = true, bool end = true) {
+std::vector<Point> NoisyCorner(double sigma_m, std::uint32_t seed, bool floor = true, bool end = true) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, sigma_m > 0.0 ? sigma_m : 1.0);
   std::uniform_real_distribution<double> along(0.05, 2.0);
@@ -28,7 +28,7 @@ std::vector<Point> Corner(double sigma_m, std::uint32_t seed, bool floor = true,
 
 const Eigen::Vector3f kOrigin(1.0f, 1.0f, 1.0f);
 
-std::vector<Point> Moved(const std::vector<Point>& points, const Pose& T_base_corner) {
+std::vector<Point> MovedPoints(const std::vector<Point>& points, const Pose& T_base_corner) {
   std::vector<Point> moved = points;
   for (Point& point : moved) point.position = (T_base_corner * point.position.cast<double>()).cast<float>();
   return moved;
@@ -43,11 +43,11 @@ VoxelMap MapOf(const std::vector<Point>& points) {
 PosePrior Guess(const Pose& T) { return {.T_map_base = T, .information = Matrix6d::Zero()}; }
 
 TEST(Icp, FindsAKnownMotionFromSixCentimetresAndThreeDegreesAway) {
-  const VoxelMap map = MapOf(Corner(0.005, 1));
+  const VoxelMap map = MapOf(NoisyCorner(0.005, 1));
   Vector6d tangent;
   tangent << 0.04, -0.03, 0.03, 0.03, -0.02, 0.04;
   const Pose T_map_base = Exp(tangent);
-  const auto points_base = Moved(Corner(0.005, 2), T_map_base.inverse());
+  const auto points_base = MovedPoints(NoisyCorner(0.005, 2), T_map_base.inverse());
   const RegisterResult result = Register(points_base, (T_map_base.inverse() * kOrigin.cast<double>()).cast<float>(), map,
                                          Guess(Pose::Identity()), {});
   EXPECT_TRUE(result.converged);
@@ -59,14 +59,14 @@ TEST(Icp, FindsAKnownMotionFromSixCentimetresAndThreeDegreesAway) {
 }
 
 TEST(Icp, StaysAtTheTruthWhenItStartsThere) {
-  const auto points = Corner(0.0, 1);
+  const auto points = NoisyCorner(0.0, 1);
   const RegisterResult result = Register(points, kOrigin, MapOf(points), Guess(Pose::Identity()), {});
   EXPECT_TRUE(result.converged);
   EXPECT_LT(Log(result.T_map_base).norm(), 1e-3);  // voxels round the map's edges, and these pull a little
 }
 
 TEST(Icp, LeavesTheOpenAxisOfABareCorridorToThePrior) {
-  const auto points = Corner(0.005, 1, true, false);  // floor and one wall along x: nothing holds x
+  const auto points = NoisyCorner(0.005, 1, true, false);  // floor and one wall along x: nothing holds x
   PosePrior prior = Guess(FromXyYaw(0.05, 0.02, 0.01));
   Vector6d sigma;
   sigma << 0.01, 0.05, 0.05, 0.05, 0.05, 0.05;
@@ -85,20 +85,20 @@ TEST(Icp, SaysWhatTheGeometryAloneDoesNotHold) {
   const auto undetermined = [&](const std::vector<Point>& points) {
     return Register(points, kOrigin, MapOf(points), prior, {}).undetermined;
   };
-  EXPECT_EQ(undetermined(Corner(0.005, 1)).count(), 0);
-  const Undetermined corridor = undetermined(Corner(0.005, 1, true, false));
+  EXPECT_EQ(undetermined(NoisyCorner(0.005, 1)).count(), 0);
+  const Undetermined corridor = undetermined(NoisyCorner(0.005, 1, true, false));
   ASSERT_EQ(corridor.count(), 1);
   EXPECT_GT(std::abs(corridor.directions(0, 0)), 0.99);
-  auto floor = Corner(0.005, 1, true, false);
+  auto floor = NoisyCorner(0.005, 1, true, false);
   std::erase_if(floor, [](const Point& point) { return point.position.z() > 0.03f; });
   EXPECT_EQ(undetermined(floor).count(), 3);
   EXPECT_EQ(undetermined({}).count(), 6);
 }
 
 TEST(Icp, SaysThatItDidNotConverge) {
-  const VoxelMap map = MapOf(Corner(0.0, 1));
+  const VoxelMap map = MapOf(NoisyCorner(0.0, 1));
   EXPECT_FALSE(Register({}, kOrigin, map, Guess(Pose::Identity()), {}).converged);
-  const auto points = Corner(0.0, 1);
+  const auto points = NoisyCorner(0.0, 1);
   EXPECT_FALSE(Register(std::span(points).first(1), kOrigin, map, Guess(Pose::Identity()), {}).converged);
   EXPECT_FALSE(Register(points, kOrigin, VoxelMap({}), Guess(Pose::Identity()), {}).converged);
   EXPECT_FALSE(Register(points, kOrigin, map, Guess(FromXyYaw(50.0, 0.0, 0.0)), {}).converged);
@@ -108,9 +108,9 @@ TEST(Icp, SaysThatItDidNotConverge) {
 }
 
 TEST(Icp, HoldsAgainstThreeTenthsOfThePointsBeingSomethingElse) {
-  const VoxelMap map = MapOf(Corner(0.003, 1));
+  const VoxelMap map = MapOf(NoisyCorner(0.003, 1));
   const Pose T_map_base = FromXyYaw(0.03, -0.02, 0.02);
-  auto points = Moved(Corner(0.003, 2), T_map_base.inverse());
+  auto points = MovedPoints(NoisyCorner(0.003, 2), T_map_base.inverse());
   for (std::size_t i = 0; i < points.size(); ++i)  // some of every surface
     if (i % 10 < 3) points[i].position += Eigen::Vector3f(0.12f, 0.12f, 0.12f);
   const RegisterResult result = Register(points, kOrigin, map, Guess(Pose::Identity()), {});
@@ -120,9 +120,9 @@ TEST(Icp, HoldsAgainstThreeTenthsOfThePointsBeingSomethingElse) {
 
 // Around a corner a frame shows far more that is new than what the map has.
 TEST(Icp, ConvergesWhenMostPointsAreSeenForTheFirstTime) {
-  const VoxelMap map = MapOf(Corner(0.003, 1));
+  const VoxelMap map = MapOf(NoisyCorner(0.003, 1));
   const Pose T_map_base = FromXyYaw(0.03, -0.02, 0.02);
-  auto points = Moved(Corner(0.003, 2), T_map_base.inverse());
+  auto points = MovedPoints(NoisyCorner(0.003, 2), T_map_base.inverse());
   for (std::size_t i = 0; i < points.size(); ++i)
     if (i % 10 != 0) points[i].position += Eigen::Vector3f(30.0f, 0.0f, 0.0f);
   const RegisterResult result = Register(points, kOrigin, map, Guess(Pose::Identity()), {});
@@ -131,8 +131,8 @@ TEST(Icp, ConvergesWhenMostPointsAreSeenForTheFirstTime) {
 }
 
 TEST(Icp, GivesTheSameBitsTwice) {
-  const VoxelMap map = MapOf(Corner(0.005, 1));
-  const auto points = Moved(Corner(0.005, 2), FromXyYaw(0.02, 0.01, 0.01));
+  const VoxelMap map = MapOf(NoisyCorner(0.005, 1));
+  const auto points = MovedPoints(NoisyCorner(0.005, 2), FromXyYaw(0.02, 0.01, 0.01));
   const auto a = Register(points, kOrigin, map, Guess(Pose::Identity()), {});
   const auto b = Register(points, kOrigin, map, Guess(Pose::Identity()), {});
   EXPECT_EQ(a.T_map_base.matrix(), b.T_map_base.matrix());

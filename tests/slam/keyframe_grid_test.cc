@@ -11,7 +11,7 @@ namespace merlin {
 namespace {
 
 // A few points of walls all around, another few for each index.
-Keyframe At(std::size_t index, const Pose& T_map_base) {
+Keyframe KeyframeAt(std::size_t index, const Pose& T_map_base) {
   std::mt19937 random(static_cast<std::uint32_t>(index));
   std::uniform_real_distribution<float> at(-3.0f, 3.0f);
   Keyframe keyframe;
@@ -39,9 +39,9 @@ std::vector<double> MadeAtOnce(const std::vector<Keyframe>& keyframes) {
 }
 
 // A grid and its key frames, as Slam drives them.
-struct Drive {
+struct GridDrive {
   void Add(double turn_rad = 0.0) {
-    keyframes.push_back(At(keyframes.size(), Along(keyframes.size(), turn_rad)));
+    keyframes.push_back(KeyframeAt(keyframes.size(), Along(keyframes.size(), turn_rad)));
     grid.Add(keyframes.back());
   }
   void Move(double turn_rad) {
@@ -62,7 +62,7 @@ struct Drive {
 };
 
 TEST(KeyframeGrid, EntersANewKeyFrameAtOnce) {
-  Drive drive;
+  GridDrive drive;
   EXPECT_EQ(drive.grid.grid().width(), 0);
   for (int i = 0; i < 3; ++i) {
     drive.Add();
@@ -75,7 +75,7 @@ TEST(KeyframeGrid, EntersANewKeyFrameAtOnce) {
 TEST(KeyframeGrid, IsAsIfMadeAtOnceAfterFortyFramesAtMost) {
   for (const std::size_t count : {0u, 1u, 2u, 39u, 40u, 41u, 79u, 80u, 81u, 300u})
     for (const bool drives : {false, true}) {
-      Drive drive;
+      GridDrive drive;
       while (drive.keyframes.size() < count) drive.Add();
       drive.Move(0.1);
       EXPECT_LE(drive.FramesUntilRenewed(drives, 0.1), KeyframeGrid::kFrames) << count << " key frames, drives: " << drives;
@@ -85,14 +85,14 @@ TEST(KeyframeGrid, IsAsIfMadeAtOnceAfterFortyFramesAtMost) {
 }
 
 TEST(KeyframeGrid, EntersFewKeyFramesAtAFrame) {
-  Drive drive;
+  GridDrive drive;
   while (drive.keyframes.size() < 400) drive.Add();
   drive.Move(0.1);
   EXPECT_GE(drive.FramesUntilRenewed(false, 0.1), 400u / (400u / KeyframeGrid::kFrames + 2));
 }
 
 TEST(KeyframeGrid, ShowsTheFormerGridAndWhatIsNewUntilItIsRenewed) {
-  Drive drive;
+  GridDrive drive;
   while (drive.keyframes.size() < 200) drive.Add();
   std::vector<Keyframe> seen = drive.keyframes;
   drive.Move(0.5);
@@ -107,7 +107,7 @@ TEST(KeyframeGrid, ShowsTheFormerGridAndWhatIsNewUntilItIsRenewed) {
 
 TEST(KeyframeGrid, FollowsASecondCorrectionThatComesBeforeTheFirstIsThrough) {
   for (const int between : {0, 1, 20, 38, 39, 40}) {
-    Drive drive;
+    GridDrive drive;
     while (drive.keyframes.size() < 300) drive.Add();
     drive.Move(0.1);
     for (int frame = 0; frame < between; ++frame) drive.grid.Follow(drive.keyframes);
@@ -119,7 +119,7 @@ TEST(KeyframeGrid, FollowsASecondCorrectionThatComesBeforeTheFirstIsThrough) {
 
 // Were each to begin anew, none would ever be through.
 TEST(KeyframeGrid, IsRenewedThoughCorrectionsNeverEnd) {
-  Drive drive;
+  GridDrive drive;
   while (drive.keyframes.size() < 300) drive.Add();
   const std::vector<double> before = CellsOf(drive.grid.grid());
   for (std::size_t frame = 0; frame < KeyframeGrid::kFrames; ++frame) {
@@ -130,11 +130,11 @@ TEST(KeyframeGrid, IsRenewedThoughCorrectionsNeverEnd) {
 }
 
 TEST(KeyframeGrid, IsACopyableStateThatGoesOnAlike) {
-  Drive drive;
+  GridDrive drive;
   while (drive.keyframes.size() < 100) drive.Add();
   drive.Move(0.1);
   drive.grid.Follow(drive.keyframes);
-  Drive copy = drive;
+  GridDrive copy = drive;
   EXPECT_EQ(copy.FramesUntilRenewed(true, 0.1), drive.FramesUntilRenewed(true, 0.1));
   EXPECT_EQ(CellsOf(copy.grid.grid()), CellsOf(drive.grid.grid()));
 }

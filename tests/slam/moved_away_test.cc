@@ -69,7 +69,7 @@ class Camera {
 };
 
 // Two walls 2 m apart, a floor, and maybe an end.
-std::vector<Box> Corridor(double end_m) {
+std::vector<Box> BoxCorridor(double end_m) {
   const auto box = [](double x0, double y0, double z0, double x1, double y1, double z1) {
     return Box(Eigen::Vector3d(x0, y0, z0), Eigen::Vector3d(x1, y1, z1));
   };
@@ -84,12 +84,12 @@ struct Outcome {
 };
 
 // Thirty frames 5 cm apart towards the box, which is there in those that is_there names.
-Outcome Drive(double end_m, bool tells_free, const std::function<bool(int)>& is_there, const Box& thing = kBox) {
+Outcome DrivePast(double end_m, bool tells_free, const std::function<bool(int)>& is_there, const Box& thing = kBox) {
   Camera camera;
   std::vector<Keyframe> keyframes;
   VoxelMap map({.voxel_m = 0.04});
   for (int i = 0; i < 30; ++i) {
-    std::vector<Box> world = Corridor(end_m);
+    std::vector<Box> world = BoxCorridor(end_m);
     if (is_there(i)) world.push_back(thing);
     keyframes.push_back(camera.Look(world, FromXyYaw(0.05 * i, 0.02 * std::sin(i), 0.03 * std::sin(0.7 * i)), tells_free));
     map.Insert(keyframes.back().points_base, keyframes.back().T_map_base, 0.0);
@@ -109,7 +109,7 @@ Outcome Drive(double end_m, bool tells_free, const std::function<bool(int)>& is_
 
 TEST(MovedAway, TakesOutABoxThatStoodInFiveOfThirtyFrames) {
   for (const int first : {0, 12, 22}) {
-    const Outcome out = Drive(5.0, false, [&](int i) { return i >= first && i < first + 5; });
+    const Outcome out = DrivePast(5.0, false, [&](int i) { return i >= first && i < first + 5; });
     EXPECT_GT(out.box, 100);
     EXPECT_EQ(out.box_left, 0) << "from frame " << first;
     EXPECT_GE(out.rest_left, 0.99 * out.rest);
@@ -117,7 +117,7 @@ TEST(MovedAway, TakesOutABoxThatStoodInFiveOfThirtyFrames) {
 }
 
 TEST(MovedAway, TakesOutABoxThatStoodLongAndThenWentAway) {
-  const Outcome out = Drive(5.0, false, [](int i) { return i < 25; });
+  const Outcome out = DrivePast(5.0, false, [](int i) { return i < 25; });
   EXPECT_GT(out.box, 100);
   EXPECT_EQ(out.box_left, 0);
   EXPECT_GE(out.rest_left, 0.99 * out.rest);
@@ -125,14 +125,14 @@ TEST(MovedAway, TakesOutABoxThatStoodLongAndThenWentAway) {
 
 TEST(MovedAway, KeepsABoxThatCameAndStayed) {
   for (const int first : {0, 10, 20}) {
-    const Outcome out = Drive(5.0, false, [&](int i) { return i >= first; });
+    const Outcome out = DrivePast(5.0, false, [&](int i) { return i >= first; });
     EXPECT_GE(out.box_left, 0.99 * out.box) << "from frame " << first;
     EXPECT_GE(out.rest_left, 0.99 * out.rest);
   }
 }
 
 TEST(MovedAway, KeepsAThinPole) {
-  const Outcome out = Drive(5.0, false, [](int) { return true; }, Box(Eigen::Vector3d(3.0, -0.02, 0.0), Eigen::Vector3d(3.04, 0.02, 0.9)));
+  const Outcome out = DrivePast(5.0, false, [](int) { return true; }, Box(Eigen::Vector3d(3.0, -0.02, 0.0), Eigen::Vector3d(3.04, 0.02, 0.9)));
   EXPECT_GT(out.box, 30);
   EXPECT_GE(out.box_left, 0.95 * out.box);
 }
@@ -140,7 +140,7 @@ TEST(MovedAway, KeepsAThinPole) {
 // A corridor's end beyond the camera's range proves nothing, unless the camera says that its rays were free.
 TEST(MovedAway, NeedsRaysThatTellOfTheDark) {
   const auto passes_by = [](int i) { return i >= 12 && i < 17; };
-  const Outcome silent = Drive(90.0, false, passes_by), told = Drive(90.0, true, passes_by);
+  const Outcome silent = DrivePast(90.0, false, passes_by), told = DrivePast(90.0, true, passes_by);
   EXPECT_GT(silent.box_left, silent.box / 4);
   EXPECT_EQ(told.box_left, 0);
   EXPECT_GE(told.rest_left, 0.99 * told.rest);
@@ -154,7 +154,7 @@ TEST(MovedAway, KeepsAFloorThatIsTooDarkFromFarAway) {
   Camera camera;
   for (int i = 0; i < 8; ++i) {
     const bool far = i >= 4;
-    keyframes.push_back(camera.Look(Corridor(50.0), FromXyYaw(far ? 0.1 * i : 3.0 + 0.1 * i, 0.0, 0.0), false));
+    keyframes.push_back(camera.Look(BoxCorridor(50.0), FromXyYaw(far ? 0.1 * i : 3.0 + 0.1 * i, 0.0, 0.0), false));
     if (!far) map.Insert(keyframes.back().points_base, keyframes.back().T_map_base, 0.0);
     if (!far) continue;
     Observation dark;
@@ -174,7 +174,7 @@ TEST(MovedAway, KeepsWallsOfTwoVisitsThatDoNotQuiteAgree) {
   Camera camera;
   for (int i = 0; i < 60; ++i) {
     const Pose T_map_base = FromXyYaw(0.05 * (i % 30), 0.0, 0.0);
-    keyframes.push_back(camera.Look(Corridor(5.0), T_map_base, true));
+    keyframes.push_back(camera.Look(BoxCorridor(5.0), T_map_base, true));
     if (i >= 30) keyframes.back().T_map_base = FromXyYaw(0.0, 0.05, 0.01) * T_map_base;
     if (i < 30) map.Insert(keyframes.back().points_base, keyframes.back().T_map_base, 0.0);
   }
@@ -189,7 +189,7 @@ TEST(MovedAway, WantsThreeSightsThatLookThrough) {
   map.Insert(std::vector<Point>{{.position = {3.0f, 0.02f, 0.5f}, .sigma_m = 0.01f}}, Pose::Identity(), 0.0);
   std::vector<Keyframe> keyframes;
   for (int looks = 1; looks <= 4; ++looks) {
-    keyframes.push_back(camera.Look(Corridor(5.0), Pose::Identity(), false));
+    keyframes.push_back(camera.Look(BoxCorridor(5.0), Pose::Identity(), false));
     EXPECT_EQ(MovedAway(map.voxels(), keyframes, {}), std::vector<bool>{looks >= 3}) << looks;
   }
 }
@@ -222,7 +222,7 @@ TEST(MovedAway, AsksSightsWhereTheyWereAndInTheOrderOfTime) {
   std::vector<Keyframe> keyframes;
   VoxelMap map({.voxel_m = 0.04});
   for (int i = 0; i < 12; ++i) {
-    std::vector<Box> world = Corridor(5.0);
+    std::vector<Box> world = BoxCorridor(5.0);
     if (i < 6) world.push_back(kBox);
     keyframes.push_back(camera.Look(world, FromXyYaw(0.05 * i, 0.0, 0.1), false));
     map.Insert(keyframes.back().points_base, keyframes.back().T_map_base, 0.0);
@@ -277,7 +277,7 @@ TEST(Slam, TakesOutOfItsMapWhatGoesAwayWhileTheCarStands) {
     Slam slam({});
     Camera camera;
     for (int i = 0; i < 40; ++i) {
-      std::vector<Box> world = Corridor(5.0);
+      std::vector<Box> world = BoxCorridor(5.0);
       if (!goes || i < 20) world.push_back(kBox);
       const double x_m = std::min(0.05 * i, 0.5);
       Observation observation = camera.See(world, FromXyYaw(x_m, 0.0, 0.0), false);

@@ -11,7 +11,7 @@
 namespace merlin {
 namespace {
 
-void ExpectRefused(const std::string& arguments, const std::string& part, const std::filesystem::path& folder) {
+void ExpectUsageError(const std::string& arguments, const std::string& part, const std::filesystem::path& folder) {
   const Outcome outcome = Merlin(arguments, folder);
   EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.said;
   EXPECT_NE(outcome.said.find(part), std::string::npos) << arguments << "\n" << outcome.said;
@@ -19,20 +19,20 @@ void ExpectRefused(const std::string& arguments, const std::string& part, const 
 
 TEST(CalibrateCli, RefusesToCalibrateFromNothingUsable) {
   const TemporaryFolder folder;
-  ExpectRefused("calibrate", "subcommand", folder.path());
-  ExpectRefused("calibrate odometry", "what is it to calibrate from?", folder.path());
-  ExpectRefused("calibrate odometry no.yaml --study", "several", folder.path());
-  ExpectRefused("calibrate odometry no.yaml", "no.yaml: cannot be read", folder.path());
-  ExpectRefused("calibrate odometry --robot moon", "--robot", folder.path());
-  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.wheel_radius=1", "wheel_radius_factor", folder.path());
-  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=nan", "wheel_radius_factor",
+  ExpectUsageError("calibrate", "subcommand", folder.path());
+  ExpectUsageError("calibrate odometry", "what is it to calibrate from?", folder.path());
+  ExpectUsageError("calibrate odometry no.yaml --study", "several", folder.path());
+  ExpectUsageError("calibrate odometry no.yaml", "no.yaml: cannot be read", folder.path());
+  ExpectUsageError("calibrate odometry --robot moon", "--robot", folder.path());
+  ExpectUsageError("calibrate odometry --robot twin --set car.drivetrain.wheel_radius=1", "wheel_radius_factor", folder.path());
+  ExpectUsageError("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=nan", "wheel_radius_factor",
                 folder.path());
-  ExpectRefused("calibrate odometry --robot twin --set car.drivetrain.surface=floor_ice", "floor_tiles", folder.path());
+  ExpectUsageError("calibrate odometry --robot twin --set car.drivetrain.surface=floor_ice", "floor_tiles", folder.path());
   std::ofstream(folder.path() / "d.yaml") << "straights: [{encoder_counts: 74112, distance_m: 5.0}]\n"
                                              "circles: [{steering_rad: 0.2, diameter_m: 3.2}]\n";
-  ExpectRefused("calibrate odometry d.yaml", "d.yaml: too few drives", folder.path());
+  ExpectUsageError("calibrate odometry d.yaml", "d.yaml: too few drives", folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "calibration.yaml"));
-  ExpectRefused("run corridor_short --set car.calibration=no.yaml", "no.yaml: cannot be read", folder.path());
+  ExpectUsageError("run corridor_short --set car.calibration=no.yaml", "no.yaml: cannot be read", folder.path());
 }
 
 TEST(CalibrateCli, CalibratesTheTwinToAFileThatAScenarioTakes) {

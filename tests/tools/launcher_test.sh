@@ -10,6 +10,7 @@ top="$world/a clone"
 mkdir -p "$top/tools/cli" "$world/bin" "$world/elsewhere"
 cp -r "$source_dir/tools/merlin" "$source_dir/tools/setup" "$top/tools"
 cp "$source_dir/tools/cli/help.txt" "$top/tools/cli"
+cp "$source_dir/CMakePresets.json" "$top"
 export PATH="$world/bin:$PATH" MERLIN_OS_RELEASE="$world/os-release"
 unset MUJOCO_ROOT
 echo 'ID=debian' >"$MERLIN_OS_RELEASE"

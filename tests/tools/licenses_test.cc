@@ -17,7 +17,7 @@ std::string Lower(std::string text) {
   return text;
 }
 
-std::string Read(const std::string& path) {
+std::string ReadText(const std::string& path) {
   std::stringstream text;
   text << std::ifstream(path).rdbuf();
   return text.str();
@@ -39,7 +39,7 @@ TEST(Licenses, EveryWorkNamesItsTermsAndItsWayIn) {
 
 // A package that someone adds to the build must be added to the table.
 TEST(Licenses, EveryPackageThatCMakeFindsIsListed) {
-  const std::string lists = Read(MERLIN_SOURCE_DIR "/CMakeLists.txt");
+  const std::string lists = ReadText(MERLIN_SOURCE_DIR "/CMakeLists.txt");
   const std::regex found("\n( *)find_package\\(([A-Za-z_-]+)");
   int count = 0;
   for (std::sregex_iterator match(lists.begin(), lists.end(), found), end; match != end; ++match) {

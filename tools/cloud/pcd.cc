@@ -44,14 +44,14 @@ struct Values {
   std::optional<PackedColour> colour{};  // then three names more, of the colours
 };
 
-struct Header {
+struct PcdHeader {
   std::map<std::string, std::vector<std::string>> entries;  // keyword to its words
   std::map<std::string, std::string> where;
   std::size_t lines = 0, data_at = 0;
 };
 
-Header ReadHeader(std::string_view bytes, const std::string& name) {
-  Header header;
+PcdHeader ReadPcdHeader(std::string_view bytes, const std::string& name) {
+  PcdHeader header;
   Lines lines = Lines::OfFile(bytes);
   FaultList faults(name);
   std::vector<std::string_view> words;
@@ -80,7 +80,7 @@ Header ReadHeader(std::string_view bytes, const std::string& name) {
 }
 
 // The words of an entry, of the given number (0: any but none).
-const std::vector<std::string>& Words(const Header& header, const std::string& key, std::size_t count,
+const std::vector<std::string>& Words(const PcdHeader& header, const std::string& key, std::size_t count,
                                       const std::string& name) {
   const auto entry = header.entries.find(key);
   if (entry == header.entries.end()) throw InputError(name, "the header has no line " + key);
@@ -90,13 +90,13 @@ const std::vector<std::string>& Words(const Header& header, const std::string& k
   return entry->second;
 }
 
-std::size_t Count(const Header& header, const std::string& key, const std::string& word) {
+std::size_t Count(const PcdHeader& header, const std::string& key, const std::string& word) {
   const auto number = ToNumber<std::size_t>(word);
   if (!number) throw InputError(header.where.at(key), key + " is no count", "a whole number", Quoted(word));
   return *number;
 }
 
-Scalar TypeOf(const std::string& where, const std::string& type, const std::string& size) {
+Scalar PcdTypeOf(const std::string& where, const std::string& type, const std::string& size) {
   static const std::map<std::string, Scalar> kTypes{
       {"I1", Scalar::kInt8},  {"U1", Scalar::kUint8},  {"I2", Scalar::kInt16}, {"U2", Scalar::kUint16},
       {"I4", Scalar::kInt32}, {"U4", Scalar::kUint32}, {"I8", Scalar::kInt64}, {"U8", Scalar::kUint64},
@@ -107,7 +107,7 @@ Scalar TypeOf(const std::string& where, const std::string& type, const std::stri
   return found->second;
 }
 
-Values ReadValues(const Header& header, std::size_t most, const std::string& name) {
+Values ReadValues(const PcdHeader& header, std::size_t most, const std::string& name) {
   const auto& fields = Words(header, "FIELDS", 0, name);
   const auto& sizes = Words(header, "SIZE", fields.size(), name);
   const auto& types = Words(header, "TYPE", fields.size(), name);
@@ -120,7 +120,7 @@ Values ReadValues(const Header& header, std::size_t most, const std::string& nam
                        std::to_string(count));
     values.names.resize(values.names.size() + count);
     values.names[values.types.size()] = fields[i];
-    const Scalar type = TypeOf(header.where.at("TYPE"), types[i], sizes[i]);
+    const Scalar type = PcdTypeOf(header.where.at("TYPE"), types[i], sizes[i]);
     values.types.resize(values.names.size(), type);
     values.field_bytes.push_back(count * SizeOf(type));
   }
@@ -132,7 +132,7 @@ Values ReadValues(const Header& header, std::size_t most, const std::string& nam
   return values;
 }
 
-std::size_t Points(const Header& header, const std::string& name) {
+std::size_t Points(const PcdHeader& header, const std::string& name) {
   const std::size_t width = Count(header, "WIDTH", Words(header, "WIDTH", 1, name)[0]);
   const std::size_t height = Count(header, "HEIGHT", Words(header, "HEIGHT", 1, name)[0]);
   if (height != 0 && width > kMost / height)
@@ -145,7 +145,7 @@ std::size_t Points(const Header& header, const std::string& name) {
   return points;
 }
 
-void ReadAscii(std::string_view data, const Header& header, const Values& values, const std::string& name,
+void ReadAscii(std::string_view data, const PcdHeader& header, const Values& values, const std::string& name,
                std::size_t points, Columns& columns, CloudFile& file) {
   std::vector<double> row(values.names.size());
   Lines lines(data);
@@ -208,7 +208,7 @@ void ReadBinary(BinaryReader reader, Values values, std::size_t points, const st
 
 // DATA binary_compressed: the sizes of what comes, compressed and not, then the points' fields in LZF: all points'
 // first field, all points' second, and so on. Gives the bytes as DATA binary has them, point by point.
-std::string Decompressed(BinaryReader reader, std::string_view rest, const Header& header, const Values& values,
+std::string Decompressed(BinaryReader reader, std::string_view rest, const PcdHeader& header, const Values& values,
                          std::size_t points, const std::string& name, CloudFile& file) {
   constexpr std::size_t kHead_bytes = 8;
   const auto compressed = static_cast<std::size_t>(reader.Read(Scalar::kUint32));
@@ -238,7 +238,7 @@ std::string Decompressed(BinaryReader reader, std::string_view rest, const Heade
 }  // namespace
 
 CloudFile ParsePcd(std::string_view bytes, const std::string& name) {
-  const Header header = ReadHeader(bytes, name);
+  const PcdHeader header = ReadPcdHeader(bytes, name);
   const Values values = ReadValues(header, bytes.size(), name);
   const std::size_t points = Points(header, name);
   Columns columns(values.names, header.where.at("FIELDS"));

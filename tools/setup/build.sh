@@ -2,10 +2,10 @@
 # Configures and builds one preset, quietly. Sourced by tools/merlin. Warnings stop the build in continuous integration (the
 # variable CI) and in the presets of developers, not at a user's.
 
-# A build folder that another place or another MuJoCo was configured for is configured afresh.
+# A build folder that another place, another MuJoCo or other presets were configured for is configured afresh.
 configured() { # folder
   [ -e "$1/build.ninja" ] && grep -qxF "MUJOCO_ROOT:PATH=$mujoco_root" "$1/CMakeCache.txt" &&
-    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$top" "$1/CMakeCache.txt"
+    grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$top" "$1/CMakeCache.txt" && cmp -s "$top/CMakePresets.json" "$1/presets.json"
 }
 
 configure() { # preset
@@ -17,6 +17,7 @@ configure() { # preset
     rm -f "$dir/build.ninja"
     stop 3 "CMake could not configure the build (log: $log)"
   }
+  cp "$top/CMakePresets.json" "$dir/presets.json"
 }
 
 build() { # preset, targets...

@@ -12,13 +12,13 @@ namespace {
 
 using Health = DeviceStatus::Health;
 
-constexpr int kWidth = 64, kHeight = 48;
+constexpr int kColorWidth = 64, kColorHeight = 48;
 constexpr double kStrictOrder_s = 1e-3;  // stamps of one arrival are a nanosecond apart
 
-ColorCameraInfo Info() {
+ColorCameraInfo ColorInfo() {
   ColorCameraInfo info;
   info.sheet.name = "small";
-  info.sheet.camera = {.width = kWidth, .height = kHeight};
+  info.sheet.camera = {.width = kColorWidth, .height = kColorHeight};
   info.sheet.latency_s = 0.050;
   info.sheet.exposure_nominal_s = 0.016;
   info.sheet.exposure_min_s = 1e-4;
@@ -29,7 +29,7 @@ ColorCameraInfo Info() {
 }
 
 // Smooth, so that a JPEG keeps it: blue rises to the right, green downwards; red tells pictures apart.
-ColorFrame Picture(int red, int width = kWidth, int height = kHeight) {
+ColorFrame Picture(int red, int width = kColorWidth, int height = kColorHeight) {
   ColorFrame frame;
   frame.width = width, frame.height = height;
   for (int v = 0; v < height; ++v)
@@ -51,7 +51,7 @@ class Publisher {
   std::jthread thread_;
 };
 
-ColorCaptureConfig Config(const std::string& url) { return {.source = url, .reopen_s = 0.01}; }
+ColorCaptureConfig CaptureConfig(const std::string& url) { return {.source = url, .reopen_s = 0.01}; }
 
 std::optional<ColorFrame> Next(ColorCapture& camera) {
   std::optional<ColorFrame> frame;
@@ -71,8 +71,8 @@ TEST(ColorCapture, ShowsThePictureThatTheTwinPublished) {
   const ColorFrame sent = Picture(100);
   const Publisher publisher(server, sent);
   HandClock clock;
-  const ColorSettings settings = DefaultSettings(Info().sheet);
-  ColorCapture camera(Config(server.url()), Info(), settings, clock);
+  const ColorSettings settings = DefaultSettings(ColorInfo().sheet);
+  ColorCapture camera(CaptureConfig(server.url()), ColorInfo(), settings, clock);
   const auto first = Next(camera), second = Next(camera);
   ASSERT_TRUE(first && second);
   ASSERT_EQ(first->bgr.size(), sent.bgr.size());
@@ -87,9 +87,9 @@ TEST(ColorCapture, SubtractsTheStreamsLatencyToo) {
   MjpegServer server;
   const Publisher publisher(server, Picture(0));
   HandClock clock;
-  ColorCaptureConfig config = Config(server.url());
+  ColorCaptureConfig config = CaptureConfig(server.url());
   config.stream_latency_s = 0.25;
-  ColorCapture camera(config, Info(), DefaultSettings(Info().sheet), clock);
+  ColorCapture camera(config, ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   EXPECT_NEAR(Seconds(clock.Now() - Next(camera)->stamp), 0.300, kStrictOrder_s);
 }
 
@@ -98,7 +98,7 @@ TEST(ColorCapture, RefusesAStreamOfAnotherSize) {
   const Publisher publisher(server, Picture(0, 80, 60));
   HandClock clock;
   try {
-    const ColorCapture camera(Config(server.url()), Info(), DefaultSettings(Info().sheet), clock);
+    const ColorCapture camera(CaptureConfig(server.url()), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(
@@ -112,7 +112,7 @@ TEST(ColorCapture, SaysThatNobodyIsThere) {
   const std::string url = [] { return MjpegServer().url(); }();  // gone again
   for (const std::string& source : {url, std::string("/dev/no_such_camera"), std::string("99"), std::string("")}) {
     try {
-      const ColorCapture camera(Config(source), Info(), DefaultSettings(Info().sheet), clock);
+      const ColorCapture camera(CaptureConfig(source), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
       FAIL() << source;
     } catch (const MachineError& error) {
       EXPECT_EQ(std::string(error.what()), source + ": cannot be opened as a camera or a stream");
@@ -126,7 +126,7 @@ TEST(ColorCapture, ComesBackWhenTheStreamDoes) {
   const int port = server->port();
   HandClock clock;
   std::optional<Publisher> publisher(std::in_place, *server, Picture(50));
-  ColorCapture camera(Config(url), Info(), DefaultSettings(Info().sheet), clock);
+  ColorCapture camera(CaptureConfig(url), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   ASSERT_TRUE(Next(camera));
   publisher.reset();
   server.reset();
@@ -147,7 +147,7 @@ TEST(ColorCapture, IsFaultyWhenTheSizeChanges) {
   const int port = server->port();
   HandClock clock;
   std::optional<Publisher> publisher(std::in_place, *server, Picture(50));
-  ColorCapture camera(Config(url), Info(), DefaultSettings(Info().sheet), clock);
+  ColorCapture camera(CaptureConfig(url), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   publisher.reset();
   server.reset();
   server = std::make_unique<MjpegServer>(port);
@@ -160,9 +160,9 @@ TEST(ColorCapture, OpensAStreamAgainThatStoppedWithoutAWord) {
   MjpegServer server;
   HandClock clock;
   std::optional<Publisher> publisher(std::in_place, server, Picture(50));
-  ColorCaptureConfig config = Config(server.url());
+  ColorCaptureConfig config = CaptureConfig(server.url());
   config.open_limit_s = config.read_limit_s = 0.2;
-  ColorCapture camera(config, Info(), DefaultSettings(Info().sheet), clock);
+  ColorCapture camera(config, ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   ASSERT_TRUE(Next(camera));
   publisher.reset();  // the connection stays: nothing is said any more
   EXPECT_TRUE(Until([&] { return camera.Status().health == Health::kAbsent; }));
@@ -176,7 +176,7 @@ TEST(ColorCapture, RefusesSettingsOutsideTheSheetAndReportsThoseInForce) {
   MjpegServer server;
   const Publisher publisher(server, Picture(50));
   HandClock clock;
-  ColorCapture camera(Config(server.url()), Info(), DefaultSettings(Info().sheet), clock);
+  ColorCapture camera(CaptureConfig(server.url()), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   EXPECT_THROW(camera.Configure({.exposure_s = 1.0}), InputError);
   const ColorSettings settings{.exposure_s = 0.001, .auto_exposure = false};
   camera.Configure(settings);

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void ExpectRefused(const fs::path& file, const std::string& reason) {
+void ExpectFileRefused(const fs::path& file, const std::string& reason) {
   try {
     CheckOutputFile(file);
     FAIL() << file << " was taken";
@@ -41,20 +41,20 @@ TEST(CheckOutputFile, RefusesWhatIsNoFile) {
   fs::create_directory(folder.path() / "folder");
   fs::create_symlink(folder.path() / "nowhere", folder.path() / "dangling");
   ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
-  ExpectRefused("", "is empty");
-  ExpectRefused(folder.path() / "folder", "a folder");
-  ExpectRefused(folder.path() / "dangling", "a link that leads nowhere");
-  ExpectRefused(folder.path() / "pipe", "a device or a pipe");
-  ExpectRefused("/dev/full", "a device or a pipe");
-  ExpectRefused(folder.path() / "file" / "below", "Not a directory");
-  ExpectRefused(folder.path() / "none" / "below", "No such file");
-  ExpectRefused(folder.path() / std::string(300, 'x'), "too long");
+  ExpectFileRefused("", "is empty");
+  ExpectFileRefused(folder.path() / "folder", "a folder");
+  ExpectFileRefused(folder.path() / "dangling", "a link that leads nowhere");
+  ExpectFileRefused(folder.path() / "pipe", "a device or a pipe");
+  ExpectFileRefused("/dev/full", "a device or a pipe");
+  ExpectFileRefused(folder.path() / "file" / "below", "Not a directory");
+  ExpectFileRefused(folder.path() / "none" / "below", "No such file");
+  ExpectFileRefused(folder.path() / std::string(300, 'x'), "too long");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 4);
 }
 
 TEST(CheckOutputFile, RefusesWhereNobodyMayWrite) {
   if (!fs::is_directory("/proc/self")) GTEST_SKIP() << "no /proc here to stand for a folder nobody may write";
-  ExpectRefused("/proc/a.ply", "cannot be written");
+  ExpectFileRefused("/proc/a.ply", "cannot be written");
 }
 
 TEST(CheckOutputFile, RefusesWithoutPermission) {
@@ -62,9 +62,9 @@ TEST(CheckOutputFile, RefusesWithoutPermission) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "file") << "x";
   fs::permissions(folder.path() / "file", fs::perms::owner_read);
-  ExpectRefused(folder.path() / "file", "Permission denied");
+  ExpectFileRefused(folder.path() / "file", "Permission denied");
   fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
-  ExpectRefused(folder.path() / "new", "Permission denied");
+  ExpectFileRefused(folder.path() / "new", "Permission denied");
   fs::permissions(folder.path(), fs::perms::owner_all);
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 const std::string kTwo = "# stamp x y z qx qy qz qw\n1.5 1 2 3 0 0 0.6 0.8\n2.000000001 4 5 6 0 0 0 1\n";
 
-void ExpectRefused(const std::string& text, const std::string& part) {
+void ExpectTumRefused(const std::string& text, const std::string& part) {
   try {
     ParseTum(text, "t.tum");
     ADD_FAILURE() << "taken: " << text;
@@ -50,22 +50,22 @@ TEST(TumFile, TakesExponentsTabsWindowsLinesAndNoLastNewline) {
 }
 
 TEST(TumFile, RefusesWithTheLine) {
-  ExpectRefused("", "t.tum: no poses");
-  ExpectRefused("# nothing\n\n", "t.tum: no poses");
-  ExpectRefused(kTwo + "1.9 4 5 6 0 0 0 1\n",
+  ExpectTumRefused("", "t.tum: no poses");
+  ExpectTumRefused("# nothing\n\n", "t.tum: no poses");
+  ExpectTumRefused(kTwo + "1.9 4 5 6 0 0 0 1\n",
                 "t.tum:4: the stamp comes before the one above it; expected 2.000000001 s");
-  ExpectRefused(kTwo + "3 4 5 6 0 0 0\n", "t.tum:4: the line ends before the quaternion");
-  ExpectRefused(kTwo + "3 4 5 6 0 0 0 1 9\n", "t.tum:4: more fields");
-  ExpectRefused(kTwo + "3,4,5,6,0,0,0,1\n", "t.tum:4: the stamp; expected a number");
-  ExpectRefused(kTwo + "nan 4 5 6 0 0 0 1\n", "t.tum:4: the stamp");
-  ExpectRefused(kTwo + "3 4 inf 6 0 0 0 1\n", "t.tum:4: the position");
-  ExpectRefused(kTwo + "3 4 5 6 0 0 nan 1\n", "t.tum:4: the quaternion");
-  ExpectRefused(kTwo + "3 4 5 6 0 0 0 0\n", "t.tum:4: a quaternion of no length");
-  ExpectRefused(kTwo + "1e12 4 5 6 0 0 0 1\n", "t.tum:4: the stamp");
+  ExpectTumRefused(kTwo + "3 4 5 6 0 0 0\n", "t.tum:4: the line ends before the quaternion");
+  ExpectTumRefused(kTwo + "3 4 5 6 0 0 0 1 9\n", "t.tum:4: more fields");
+  ExpectTumRefused(kTwo + "3,4,5,6,0,0,0,1\n", "t.tum:4: the stamp; expected a number");
+  ExpectTumRefused(kTwo + "nan 4 5 6 0 0 0 1\n", "t.tum:4: the stamp");
+  ExpectTumRefused(kTwo + "3 4 inf 6 0 0 0 1\n", "t.tum:4: the position");
+  ExpectTumRefused(kTwo + "3 4 5 6 0 0 nan 1\n", "t.tum:4: the quaternion");
+  ExpectTumRefused(kTwo + "3 4 5 6 0 0 0 0\n", "t.tum:4: a quaternion of no length");
+  ExpectTumRefused(kTwo + "1e12 4 5 6 0 0 0 1\n", "t.tum:4: the stamp");
 }
 
 TEST(TumFile, NamesEveryFaultAtOnce) {
-  ExpectRefused(kTwo + "3 4 5\n1 4 5 6 0 0 0 1\nx\n4 4 5 6 0 0 0 1 1\n",
+  ExpectTumRefused(kTwo + "3 4 5\n1 4 5 6 0 0 0 1\nx\n4 4 5 6 0 0 0 1 1\n",
                 "t.tum:4: the line ends before the position\n"
                 "t.tum:5: the stamp comes before the one above it; expected "
                 "2.000000001 s or more, got 1.000000000 s\nt.tum:6: the stamp; expected a number between -9e+09 and "
@@ -113,7 +113,7 @@ TEST(TumFile, SurvivesBrokenTexts) {
 }
 
 // A pose a stamp [ms], whose x [m] is its place in the list.
-Trajectory At(const std::vector<int>& stamps_ms) {
+Trajectory StampedAt(const std::vector<int>& stamps_ms) {
   Trajectory trajectory;
   for (const int stamp_ms : stamps_ms)
     trajectory.push_back(
@@ -126,7 +126,7 @@ using Indices = std::vector<std::pair<int, int>>;
 Indices Paired(const std::vector<int>& truth_ms, const std::vector<int>& estimate_ms, int difference_ms) {
   Indices indices;
   for (const PosePair& pair :
-       PairAtNearestStamps(At(truth_ms), At(estimate_ms), std::chrono::milliseconds(difference_ms)))
+       PairAtNearestStamps(StampedAt(truth_ms), StampedAt(estimate_ms), std::chrono::milliseconds(difference_ms)))
     indices.emplace_back(pair.T_world_base.translation().x(), pair.T_map_base.translation().x());
   return indices;
 }

@@ -7,7 +7,7 @@
 namespace merlin {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 // Derivatives by central differences: of the error by a step of one end.
 template <class Group>
@@ -36,7 +36,7 @@ void ExpectDerivatives(const Pose& from, const Pose& to, const Pose& measured, P
 }
 
 // Errors of rotation from zero to just short of a turn of pi, where the sign of the error flips.
-const double kAngles[] = {0.0, 1e-12, 1e-6, 0.1, 1.0, 3.0, kPi - 1e-3, -kPi + 1e-3};
+const double kAngles[] = {0.0, 1e-12, 1e-6, 0.1, 1.0, 3.0, kHalfTurn - 1e-3, -kHalfTurn + 1e-3};
 
 TEST(EdgeError, HasTheDerivativesThatDifferencesFindInSpace) {
   RandomGraphs random(1);
@@ -76,8 +76,8 @@ TEST(EdgeError, IsThatOfTheMatrices) {
 TEST(EdgeError, WrapsTheAngle) {
   const auto pose = [](double yaw_rad) { return Planar::Of(FromXyYaw(0.0, 0.0, yaw_rad)); };
   const Eigen::Vector3d error = Planar::Error(pose(3.1), pose(-3.1), pose(0.0), PlanarRotation::kAngle);
-  EXPECT_NEAR(error.z(), 2.0 * kPi - 6.2, 1e-14);
-  const Pose half_turn(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()));
+  EXPECT_NEAR(error.z(), 2.0 * kHalfTurn - 6.2, 1e-14);
+  const Pose half_turn(Eigen::AngleAxisd(kHalfTurn, Eigen::Vector3d::UnitX()));
   const Vector6d spatial =
       Spatial::Error(Spatial::Of(Pose::Identity()), Spatial::Of(half_turn), Spatial::Of(Pose::Identity()), {});
   EXPECT_NEAR(spatial.tail<3>().norm(), 2.0, 1e-14);

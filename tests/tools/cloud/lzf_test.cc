@@ -78,7 +78,7 @@ TEST(Lzf, UndoesAnEncoder) {
     }
 }
 
-void ExpectRefused(const std::string& data, std::size_t size, const std::string& part) {
+void ExpectLzfRefused(const std::string& data, std::size_t size, const std::string& part) {
   try {
     Decompress(data, size);
     ADD_FAILURE() << part;
@@ -88,16 +88,16 @@ void ExpectRefused(const std::string& data, std::size_t size, const std::string&
 }
 
 TEST(Lzf, RefusesWithTheByte) {
-  ExpectRefused("", 1, "f: byte 100: the compressed data give fewer bytes than they say; expected 1, got 0");
-  ExpectRefused("\x02" "ab", 3, "f: byte 101: the compressed data end within a run");
-  ExpectRefused("\x02" "abc\x60", 8, "byte 105: the compressed data end within a run");
-  ExpectRefused("\x02" "abc\xe0", 20, "byte 105: the compressed data end within a run");
-  ExpectRefused("\x02" "abc\xe0\x01", 20, "byte 106: the compressed data end within a run");
-  ExpectRefused("\x02" "abc\x60\x03", 8, "byte 106: the compressed data repeat what is before their start");
-  ExpectRefused(std::string("\x60\x00", 2), 5, "before their start");
-  ExpectRefused("\x02" "abc", 2, "more bytes than they say");
-  ExpectRefused("\x02" "abc\x60\x02", 7, "more bytes than they say");
-  ExpectRefused("\x02" "abc\x60\x02", 9, "fewer bytes than they say; expected 9, got 8");
+  ExpectLzfRefused("", 1, "f: byte 100: the compressed data give fewer bytes than they say; expected 1, got 0");
+  ExpectLzfRefused("\x02" "ab", 3, "f: byte 101: the compressed data end within a run");
+  ExpectLzfRefused("\x02" "abc\x60", 8, "byte 105: the compressed data end within a run");
+  ExpectLzfRefused("\x02" "abc\xe0", 20, "byte 105: the compressed data end within a run");
+  ExpectLzfRefused("\x02" "abc\xe0\x01", 20, "byte 106: the compressed data end within a run");
+  ExpectLzfRefused("\x02" "abc\x60\x03", 8, "byte 106: the compressed data repeat what is before their start");
+  ExpectLzfRefused(std::string("\x60\x00", 2), 5, "before their start");
+  ExpectLzfRefused("\x02" "abc", 2, "more bytes than they say");
+  ExpectLzfRefused("\x02" "abc\x60\x02", 7, "more bytes than they say");
+  ExpectLzfRefused("\x02" "abc\x60\x02", 9, "fewer bytes than they say; expected 9, got 8");
 }
 
 }  // namespace

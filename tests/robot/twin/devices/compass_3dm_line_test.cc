@@ -17,9 +17,9 @@ using std::chrono::milliseconds;
 using Health = DeviceStatus::Health;
 constexpr double kCount_rad = 2.0 * std::numbers::pi / 65536.0;
 
-class Line {
+class CompassLine {
  public:
-  explicit Line(double north_yaw_rad = 0.0, bool with_checksum = false)
+  explicit CompassLine(double north_yaw_rad = 0.0, bool with_checksum = false)
       : device({.north_yaw_rad = north_yaw_rad, .with_checksum = with_checksum},
                [this] {
                  sampled.push_back(now);
@@ -56,7 +56,7 @@ class Line {
 TEST(Compass3dmLine, GivesTheBodysAnglesBackInEveryQuadrant) {
   for (const double north_rad : {0.0, 1.0, -2.5})
     for (const double yaw_rad : {-3.1, -2.0, -0.7, 0.0, 1e-3, 0.7, 2.0, 3.1}) {
-      Line line(north_rad);
+      CompassLine line(north_rad);
       line.body = {.roll_rad = 0.2, .pitch_rad = -0.3, .yaw_rad = yaw_rad};
       line.Run(milliseconds(200));
       ASSERT_FALSE(line.readings.empty());
@@ -67,7 +67,7 @@ TEST(Compass3dmLine, GivesTheBodysAnglesBackInEveryQuadrant) {
 }
 
 TEST(Compass3dmLine, ReadsTwelveTimesASecondAndStampsTheSamplingInstant) {
-  Line line;
+  CompassLine line;
   line.Run(std::chrono::seconds(10));
   EXPECT_NEAR(static_cast<double>(line.readings.size()), 125.0, 2.0);
   for (std::size_t i = 1; i < line.readings.size(); ++i) EXPECT_GT(line.readings[i].stamp, line.readings[i - 1].stamp);
@@ -78,13 +78,13 @@ TEST(Compass3dmLine, ReadsTwelveTimesASecondAndStampsTheSamplingInstant) {
 }
 
 TEST(Compass3dmLine, WorksWithTheChecksum) {
-  Line line(0.0, true);
+  CompassLine line(0.0, true);
   line.Run(milliseconds(500));
   EXPECT_GE(line.readings.size(), 4u);
 }
 
 TEST(Compass3dmLine, TellsSilenceGarbageAndAMissingPort) {
-  Line line;
+  CompassLine line;
   line.Run(milliseconds(500));
   const std::size_t good = line.readings.size();
   line.fault = [](const Bytes&) { return Bytes(); };
@@ -109,7 +109,7 @@ TEST(Compass3dmLine, TellsSilenceGarbageAndAMissingPort) {
 // Halves, replies twice, and replies that come a poll too late: no reading of them, or the very one that was asked for.
 TEST(Compass3dmLine, NeverTakesAPartialADoubledOrALateReplyForAnother) {
   for (const int kind : {0, 1, 2}) {
-    Line line;
+    CompassLine line;
     Bytes held;
     Time due{0};
     int calls = 0;

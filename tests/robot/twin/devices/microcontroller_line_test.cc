@@ -13,13 +13,13 @@ namespace {
 
 using std::chrono::milliseconds;
 using Health = DeviceStatus::Health;
-using Line = MicrocontrollerLine<ToyCar>;
-constexpr int kBaud = Line::kBaud;
+using ControllerLine = MicrocontrollerLine<ToyCar>;
+constexpr int kBaud = ControllerLine::kBaud;
 
 const DriveCommand kGo{.speed_m_s = 0.5, .steering_rad = 0.1, .valid_for = milliseconds(300)};
 
 // Drives, then the fault begins while the stack goes on commanding (or not): braked 200 ms later?
-void ExpectBraked(Line& line, const LineFault& fault, std::optional<DriveCommand> command) {
+void ExpectBraked(ControllerLine& line, const LineFault& fault, std::optional<DriveCommand> command) {
   line.Run(milliseconds(1000), kGo);
   ASSERT_FALSE(line.car.braked());
   line.fault = fault;
@@ -29,7 +29,7 @@ void ExpectBraked(Line& line, const LineFault& fault, std::optional<DriveCommand
 }
 
 TEST(MicrocontrollerLine, DrivesAndReports) {
-  Line line;
+  ControllerLine line;
   line.Run(milliseconds(2000), kGo);
   EXPECT_EQ(line.host.status().health, Health::kOk);
   EXPECT_EQ(line.host.status().garbage, 0u);
@@ -46,7 +46,7 @@ TEST(MicrocontrollerLine, DrivesAndReports) {
 
 // Sampled on the emulator's 20 ms grid: the host cannot see that, but must find it from the bytes' times.
 TEST(MicrocontrollerLine, StampsTheSamplingInstant) {
-  Line line;
+  ControllerLine line;
   line.Run(milliseconds(2000), kGo);
   for (std::size_t i = 0; i < line.states.size(); ++i) {
     const double error_s = Seconds(line.states[i].stamp - milliseconds(20) * static_cast<int>(i));
@@ -56,7 +56,7 @@ TEST(MicrocontrollerLine, StampsTheSamplingInstant) {
 }
 
 TEST(MicrocontrollerLine, GoesOnCountingAcrossTheWrapOf32Bits) {
-  Line line;
+  ControllerLine line;
   line.car.counts_at_start = 0x7FFFFFFF - 100;
   line.Run(milliseconds(2000), kGo);
   EXPECT_GT(line.states.back().encoder_counts, std::int64_t{0x7FFFFFFF} + 500);
@@ -65,7 +65,7 @@ TEST(MicrocontrollerLine, GoesOnCountingAcrossTheWrapOf32Bits) {
 }
 
 TEST(MicrocontrollerLine, BrakesWhenTheCommandExpiresAndNotBefore) {
-  Line line;
+  ControllerLine line;
   line.Run(milliseconds(1000), kGo);
   const Time last_sent = line.now - milliseconds(50);
   line.Run(milliseconds(1000));
@@ -74,7 +74,7 @@ TEST(MicrocontrollerLine, BrakesWhenTheCommandExpiresAndNotBefore) {
 }
 
 TEST(MicrocontrollerLine, KeepsALongCommandGoingWithoutTheStack) {
-  Line line;
+  ControllerLine line;
   DriveCommand longer = kGo;
   longer.valid_for = Duration::max();
   line.host.Command(longer, line.now);
@@ -84,7 +84,7 @@ TEST(MicrocontrollerLine, KeepsALongCommandGoingWithoutTheStack) {
 
 TEST(MicrocontrollerLine, BrakesForNumbersThatAreNotFinite) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    Line speed, steering;
+    ControllerLine speed, steering;
     ExpectBraked(speed, {}, DriveCommand{bad, 0.0, std::chrono::seconds(10)});
     ExpectBraked(steering, {}, DriveCommand{0.5, -bad, std::chrono::seconds(10)});
   }
@@ -92,21 +92,21 @@ TEST(MicrocontrollerLine, BrakesForNumbersThatAreNotFinite) {
 
 TEST(MicrocontrollerLine, BrakesForCommandsThatHaveExpiredWhenTheyCome) {
   for (const Duration stale : {Duration(0), Duration(-1), Duration::min()}) {
-    Line line;
+    ControllerLine line;
     ExpectBraked(line, {}, DriveCommand{0.5, 0.0, stale});
     EXPECT_TRUE(line.states.back().expired);
   }
 }
 
 TEST(MicrocontrollerLine, BrakesWhenNothingArrives) {
-  Line line;
+  ControllerLine line;
   ExpectBraked(line, Silence(), kGo);
   EXPECT_EQ(line.host.status().health, Health::kSilent);
   EXPECT_EQ(line.host.Complaint(), "microcontroller on line: it is silent");
 }
 
 TEST(MicrocontrollerLine, BrakesWhenOnlyGarbageArrives) {
-  Line line;
+  ControllerLine line;
   ExpectBraked(line, Garbage(), kGo);
   EXPECT_EQ(line.host.status().health, Health::kFaulty);
   EXPECT_GT(line.host.status().garbage, 100u);
@@ -114,22 +114,22 @@ TEST(MicrocontrollerLine, BrakesWhenOnlyGarbageArrives) {
 }
 
 TEST(MicrocontrollerLine, BrakesWhenOnlyHalvesOfFramesArrive) {
-  Line line;
+  ControllerLine line;
   ExpectBraked(line, Halves(), kGo);
 }
 
 TEST(MicrocontrollerLine, BrakesWhenOnlyDuplicatesOfACommandArrive) {
-  Line line;
+  ControllerLine line;
   ExpectBraked(line, Duplicates(), DriveCommand{0.5, 0.0, milliseconds(150)});
 }
 
 TEST(MicrocontrollerLine, BrakesWhenCommandsComeLate) {
-  Line line;
+  ControllerLine line;
   ExpectBraked(line, Late(milliseconds(400)), kGo);  // longer than they hold
 }
 
 TEST(MicrocontrollerLine, IsNotDisturbedByDuplicatesBetweenGoodFrames) {
-  Line line;
+  ControllerLine line;
   line.fault = [](Time, Side, Bytes sent) {
     const Bytes once = sent;
     sent.insert(sent.end(), once.begin(), once.end());
@@ -142,10 +142,10 @@ TEST(MicrocontrollerLine, IsNotDisturbedByDuplicatesBetweenGoodFrames) {
 }
 
 TEST(MicrocontrollerLine, SurvivesAFloodOfCommands) {
-  Line line;
+  ControllerLine line;
   for (int i = 0; i < 1000; ++i) {
     for (int k = 0; k < 100; ++k) line.host.Command(kGo, line.now);
-    line.Run(Line::kTick);
+    line.Run(ControllerLine::kTick);
   }
   EXPECT_FALSE(line.car.braked());
   line.host.Command({}, line.now);
@@ -155,7 +155,7 @@ TEST(MicrocontrollerLine, SurvivesAFloodOfCommands) {
 }
 
 TEST(MicrocontrollerLine, LetsTheNewestOfAFloodExpire) {
-  Line line;
+  ControllerLine line;
   line.Run(milliseconds(1000), kGo);
   for (int k = 0; k < 5000; ++k) line.host.Command({0.5, 0.1, std::chrono::hours(1)}, line.now);
   line.host.Command(kGo, line.now);
@@ -166,7 +166,7 @@ TEST(MicrocontrollerLine, LetsTheNewestOfAFloodExpire) {
 
 // A byte a millisecond: a frame all the same.
 TEST(MicrocontrollerLine, JoinsWhatComesInPieces) {
-  Line line;
+  ControllerLine line;
   std::deque<std::uint8_t> held;
   line.fault = [&held](Time, Side from, const Bytes& sent) {
     if (from == Side::kDevice) return sent;
@@ -183,7 +183,7 @@ TEST(MicrocontrollerLine, JoinsWhatComesInPieces) {
 }
 
 TEST(MicrocontrollerLine, BrakesWhenThePortGoesAndDrivesAgainWhenItComesBack) {
-  Line line;
+  ControllerLine line;
   line.Run(milliseconds(1000), kGo);
   line.host.Disconnected(line.now);
   EXPECT_EQ(line.host.status().health, Health::kAbsent);
@@ -201,7 +201,7 @@ TEST(MicrocontrollerLine, BrakesWhenThePortGoesAndDrivesAgainWhenItComesBack) {
 
 // A new program whose clock begins at 0, behind a microcontroller that has long heard another.
 TEST(MicrocontrollerLine, TakesCommandsOfAHostThatStartedAnew) {
-  Line line;
+  ControllerLine line;
   line.now = std::chrono::hours(1);
   line.Run(milliseconds(1000), kGo);
   line.host_started = line.now;
@@ -214,7 +214,7 @@ TEST(MicrocontrollerLine, TakesCommandsOfAHostThatStartedAnew) {
 }
 
 TEST(MicrocontrollerLine, GoesOnWhenTheMicrocontrollerStartsAnew) {
-  Line line;
+  ControllerLine line;
   line.Run(milliseconds(2000), kGo);
   const std::int64_t counts = line.states.back().encoder_counts;
   line.SwitchOn();
@@ -225,7 +225,7 @@ TEST(MicrocontrollerLine, GoesOnWhenTheMicrocontrollerStartsAnew) {
 }
 
 TEST(MicrocontrollerLine, StaysBrakedBeforeTheFirstCommand) {
-  Line line;
+  ControllerLine line;
   line.Run(milliseconds(1000));
   EXPECT_TRUE(line.car.braked());
   EXPECT_TRUE(line.states.back().expired);
@@ -233,7 +233,7 @@ TEST(MicrocontrollerLine, StaysBrakedBeforeTheFirstCommand) {
 }
 
 TEST(MicrocontrollerLine, TurnsThePanUnitAndReportsIt) {
-  Line line;
+  ControllerLine line;
   line.host.Pan(std::numeric_limits<double>::quiet_NaN());  // ignored
   line.host.Pan(1.2);
   line.Run(milliseconds(100));
@@ -246,7 +246,7 @@ TEST(MicrocontrollerLine, TurnsThePanUnitAndReportsIt) {
 }
 
 TEST(MicrocontrollerLine, SaysWhichVersionIsWrong) {
-  Line line;
+  ControllerLine line;
   line.fault = [](Time, Side from, const Bytes& sent) {
     if (from == Side::kHost) return sent;
     return Bytes{0x00, 0x03, 0x02, 0x81, 0x04, 0x02, 0x45, 0x80, 0x00};  // a Hello reply of version 2, CRC by hand
@@ -271,7 +271,7 @@ TEST(MicrocontrollerEmulator, WarnsOfABatteryBelowItsLimit) {
 
 // 20 states a second and a command every 50 ms share one channel: slow and lossy, but never unsafe.
 TEST(MicrocontrollerLine, DrivesOverTheRadioAndBrakesWhenItIsLost) {
-  Line line(std::make_unique<Radio>(RadioConfig{.baud = kBaud, .packet_loss = 0.05}, 1));
+  ControllerLine line(std::make_unique<Radio>(RadioConfig{.baud = kBaud, .packet_loss = 0.05}, 1));
   line.Run(milliseconds(5000), kGo);
   EXPECT_GT(line.states.size(), 50u);
   EXPECT_GT(line.states.back().encoder_counts, 1500);  // of 2500 without any loss
