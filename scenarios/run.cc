@@ -125,6 +125,12 @@ class Session {
   WallClock::time_point begin_ = WallClock::now();
 };
 
+// The sentences of a note, and those that the room asks for.
+std::string WithWarnings(std::string note, const sim::World& world) {
+  for (const std::string& warning : world.warnings()) note += (note.empty() ? "" : "; ") + warning;
+  return note;
+}
+
 RunReport RunInTwin(const RunOptions& options, const CarDescription& car, const std::atomic<bool>& stop) {
   Session session(options, car, stop);
   std::unique_ptr<Twin> twin;
@@ -136,7 +142,7 @@ RunReport RunInTwin(const RunOptions& options, const CarDescription& car, const 
   twin->OnStep([&truth](sim::World& world) { truth.Watch(world); });
   return session.Drive(
       twin->robot(), [&] { return TrueWorld{&twin->world(), &truth, true}; }, [&](Time stamp) { truth.Keep(stamp); },
-      twin->gl_name(), note);
+      twin->gl_name(), WithWarnings(note, twin->world()));
 }
 
 // A folder of this run's own for the devices' sockets, gone with it.
@@ -211,6 +217,7 @@ RunReport RunEmulated(const RunOptions& options, const CarDescription& car, cons
     truth.emplace(options.scenario, twin.world());
     twin.OnStep([&truth](sim::World& world) { truth->Watch(world); });
     gl_name = twin.gl_name();
+    note = WithWarnings(note, twin.world());
   });
   emulated->Start();
   HardwareRobot hardware(DevicesOf(*emulated), cameras, clock);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "sim/solid.h"
 #include "sim/spec.h"
 
 namespace merlin::sim::car_body {
@@ -105,10 +106,12 @@ mjsGeom* AddShape(mjSpec* spec, const CarShape& shape, const std::string& name, 
   return geom;
 }
 
-// Meets the room (1, 1), never the car itself: wheels may steer past the chassis.
+// Meets what of the room is solid, never the car itself: wheels may steer past the chassis. Friction and stiffness are
+// the car's alone: else the larger friction of the pair would count, and a floor's default is 1.
 void SetCollides(mjsGeom* geom) {
   geom->group = kCollisionGroup;
-  geom->contype = 2, geom->conaffinity = 1;
+  geom->contype = kCarItself, geom->conaffinity = kMeetsCar;
+  geom->priority = kCarPriority;
 }
 
 // Values found to roll truly: circles within 0.1 % of Ackermann's radius, no drift at rest.
@@ -119,7 +122,6 @@ void AddTyre(const CarDescription& car, const CarWheel& wheel, const mjsDefault*
   geom->type = mjGEOM_ELLIPSOID;
   geom->size[0] = geom->size[1] = car.wheel_radius_m, geom->size[2] = wheel.width_m / 2.0;
   geom->condim = 3;    // no torsional friction: a tyre steered on the spot would fight it
-  geom->priority = 1;  // else the larger friction of the pair would count, and a floor's default is 1
   geom->friction[0] = car.drivetrain.tyre_friction;
   geom->solref[0] = 0.01, geom->solref[1] = 1.0;
   geom->solimp[0] = 0.95, geom->solimp[1] = 0.99, geom->solimp[2] = 0.001;

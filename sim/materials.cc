@@ -17,8 +17,8 @@ namespace {
 constexpr double kRetroGainMax = 1e4;  // brighter ones are typing errors
 constexpr double kRounding = 1e-12;    // of a sum of two decimal numbers
 constexpr std::array<std::string_view, 2> kFileKeys{"default", "materials"};
-constexpr std::array<std::string_view, 5> kMaterialKeys{"nir_albedo", "mirror", "glass_transmission", "retro_gain",
-                                                        "grip"};
+constexpr std::array<std::string_view, 6> kMaterialKeys{"nir_albedo", "mirror", "glass_transmission",
+                                                        "retro_gain", "grip",   "passable"};
 
 // Collects every fault of one file, so that a person mends them in one go.
 class Reader {
@@ -85,6 +85,10 @@ class Reader {
     ReadNumber(name, node, "glass_transmission", material.glass_transmission, 0.0, 1.0);
     ReadNumber(name, node, "retro_gain", material.retro_gain, 1.0, kRetroGainMax);
     ReadNumber(name, node, "grip", material.grip, 0.01, 2.0);
+    if (const YAML::Node passable = node["passable"])
+      if (!passable.IsScalar() || !YAML::convert<bool>::decode(passable, material.passable))
+        Fault(passable, fmt::format("passable of material '{}'", name), "true or false",
+              passable.IsScalar() ? passable.Scalar() : "no truth value");
     const double sum = material.nir_albedo + material.mirror;
     if (albedo_read && mirror_read && sum > 1.0 + kRounding) {
       Fault(node, fmt::format("nir_albedo + mirror of material '{}'", name), "at most 1", fmt::format("{:g}", sum));

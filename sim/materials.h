@@ -1,5 +1,6 @@
 // What surfaces are, by material name (models/materials.yaml): optical properties, all in the near infrared (870 nm),
-// measured or listed per material and never derived from a visible colour, and how they hold a tyre.
+// measured or listed per material and never derived from a visible colour, how they hold a tyre, and whether they stop
+// a car.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -19,6 +20,7 @@ struct Material {
   double retro_gain = 1.0;          // times a Lambertian surface's brightness, seen from the lamp, [1, 10000]:
                                     // retro-reflectors 100-1000
   double grip = 1.0;                // of a tyre on it: its friction there over the car's tyre_friction, [0.01, 2]
+  bool passable = false;            // what is made of it needs no contact: the car drives through curtains and leaves
 };
 
 struct Materials {

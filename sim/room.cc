@@ -43,6 +43,32 @@ void DrawCurtain(mjSpec* spec, const std::filesystem::path& room, bool closed) {
     if (mjs_delete(spec, geom) != 0) throw std::runtime_error(std::string("MuJoCo: ") + mjs_getError(spec));
 }
 
+// Arena, contacts and constraints as many as it takes.
+void ResetSizes(mjSpec* spec) {
+  spec->memory = spec->nstack = -1;
+  spec->njmax = spec->nconmax = -1;
+}
+
+bool ChangesMasses(const mjsCompiler& compiler) {
+  return compiler.boundmass > 0.0 || compiler.boundinertia > 0.0 || compiler.settotalmass > 0.0 ||
+         compiler.balanceinertia || compiler.inertiafromgeom != mjINERTIAFROMGEOM_AUTO;
+}
+
+void KeepMasses(mjSpec* room, const mjModel* alone) {
+  int id = 0;  // in the order of bodies, the world's first
+  for (mjsElement* e = mjs_firstElement(room, mjOBJ_BODY); e != nullptr; e = mjs_nextElement(room, e), ++id) {
+    if (alone->body_weldid[id] == 0) continue;
+    mjsBody* body = mjs_asBody(e);
+    body->mass = alone->body_mass[id];
+    std::copy_n(alone->body_ipos + 3 * id, 3, body->ipos);
+    std::copy_n(alone->body_iquat + 4 * id, 4, body->iquat);
+    std::copy_n(alone->body_inertia + 3 * id, 3, body->inertia);
+    mjs_defaultOrientation(&body->ialt);
+    std::ranges::fill(body->fullinertia, std::nan(""));
+    body->explicitinertial = 1;
+  }
+}
+
 }  // namespace
 
 void SilenceMujoco() { mju_setLogHandler(OnMujocoMessage); }
@@ -61,6 +87,36 @@ SpecPtr ReadRoom(const std::filesystem::path& room, bool curtain_closed) {
   if (!spec) throw RoomError(room, "not a room (MJCF)", error);
   DrawCurtain(spec.get(), room, curtain_closed);
   return spec;
+}
+
+ModelPtr CompileAlone(const std::filesystem::path& room, bool curtain_closed) {
+  const SpecPtr spec = ReadRoom(room, curtain_closed);  // not mj_copySpec: it leaves out what names something missing
+  spec->compiler.fusestatic = spec->compiler.discardvisual = spec->compiler.alignfree = 0;
+  ResetSizes(spec.get());
+  for (mjsElement* e = mjs_firstElement(spec.get(), mjOBJ_JOINT); e != nullptr; e = mjs_nextElement(spec.get(), e))
+    mjs_asJoint(e)->align = mjALIGNFREE_FALSE;
+  for (mjsElement* e = mjs_firstElement(spec.get(), mjOBJ_GEOM); e != nullptr; e = mjs_nextElement(spec.get(), e))
+    if (mjsGeom* geom = mjs_asGeom(e); geom->type == mjGEOM_MESH) geom->contype = geom->conaffinity = 0;
+  ModelPtr model(mj_compile(spec.get(), nullptr), mj_deleteModel);
+  if (!model) throw RoomError(room, "the room does not compile", mjs_getError(spec.get()));
+  return model;
+}
+
+void KeepFromCar(mjSpec* room, const mjModel* alone) {
+  if (ChangesMasses(room->compiler)) KeepMasses(room, alone);
+  const SpecPtr plain(mj_makeSpec(), mj_deleteSpec);
+  mj_defaultOption(&room->option);
+  room->compiler.inertiafromgeom = plain->compiler.inertiafromgeom;
+  room->compiler.settotalmass = plain->compiler.settotalmass;
+  room->compiler.boundmass = plain->compiler.boundmass;
+  room->compiler.boundinertia = plain->compiler.boundinertia;
+  room->compiler.balanceinertia = plain->compiler.balanceinertia;
+  room->compiler.fusestatic = room->compiler.discardvisual = 0;
+  ResetSizes(room);
+  std::vector<mjsElement*> keys;
+  for (mjsElement* e = mjs_firstElement(room, mjOBJ_KEY); e != nullptr; e = mjs_nextElement(room, e)) keys.push_back(e);
+  for (mjsElement* key : keys)
+    if (mjs_delete(room, key) != 0) throw std::runtime_error(std::string("MuJoCo: ") + mjs_getError(room));
 }
 
 std::string GeomName(const mjModel* model, int geom) {

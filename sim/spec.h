@@ -11,6 +11,7 @@
 namespace merlin::sim {
 
 using SpecPtr = std::unique_ptr<mjSpec, void (*)(mjSpec*)>;
+using ModelPtr = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 
 // A room's <default> also reaches elements that are added with no default class given. This is the class of a spec of
 // its own, that is MuJoCo's built-in values; elements copy it when they are added.

@@ -12,6 +12,8 @@
 #include "sim/car_body.h"
 #include "sim/drivetrain.h"
 #include "sim/room.h"
+#include "sim/shape.h"
+#include "sim/solid.h"
 #include "sim/spec.h"
 #include "sim/surface.h"
 #include "sim/true_car.h"
@@ -23,19 +25,14 @@ constexpr double kParkingHeight_m = -50.0;  // of obstacles that are away
 constexpr double kFarthest_m = 1e5;         // of any geom from the origin
 constexpr double kFloorSearch_m = 0.5;      // above and below the start's height
 
-// The physics that the car was tuned with, and nothing of the room's that would change the car.
+// The physics that the car was tuned with.
 void SetOptions(mjSpec* spec) {
-  mj_defaultOption(&spec->option);
   spec->option.timestep = Seconds(World::kStep);
   spec->option.integrator = mjINT_IMPLICITFAST;
   spec->option.cone = mjCONE_ELLIPTIC;
   spec->option.impratio = 10.0;
   spec->option.solver = mjSOL_NEWTON;
   spec->option.disableflags |= mjDSBL_AUTORESET;  // else a bad number restarts the simulation silently
-  spec->compiler.inertiafromgeom = mjINERTIAFROMGEOM_AUTO;
-  spec->compiler.settotalmass = -1.0;
-  spec->compiler.fusestatic = 0;
-  spec->compiler.discardvisual = 0;
 }
 
 void RefuseFaults(const DrivetrainConfig& config) {
@@ -67,6 +64,10 @@ World::World(const WorldOptions& options) {
   const DrivetrainConfig drivetrain = options.drivetrain.ideal ? IdealDrivetrain() : options.drivetrain;
   const CarDescription true_car = TrueCar(options.car, drivetrain);
   SpecPtr spec = ReadRoom(options.room, options.curtain_closed);
+  const ModelPtr alone = CompileAlone(options.room, options.curtain_closed);
+  KeepFromCar(spec.get(), alone.get());
+  const SolidRoom solid = MakeSolid(spec.get(), alone.get(), options.materials, options.room);
+  warnings_ = solid.warnings;
   SetOptions(spec.get());
   car_body::AddTo(spec.get(), true_car, options.T_world_start);
   drivetrain::AddTo(spec.get(), true_car);
@@ -79,6 +80,7 @@ World::World(const WorldOptions& options) {
   if (!data_) throw std::runtime_error("MuJoCo cannot make its data: out of memory");
   ReadNumerics(options.room.string());
   NameParts(options.car, options.obstacles);
+  for (const mjsGeom* ground : solid.grounds) is_floor_[mjs_getId(ground->element)] = true;
   const auto tyre = std::ranges::find_if(std::views::iota(0, static_cast<int>(model_->ngeom)), [this](int geom) {
     return is_wheel_[geom] && model_->geom_contype[geom] != 0;
   });
@@ -110,6 +112,7 @@ void World::AddObstacles(mjSpec* spec, const std::vector<Obstacle>& obstacles) c
     mjsGeom* geom = mjs_addGeom(body, plain.get());
     SetName(geom->element, ObstacleName(obstacle.name));
     geom->type = mjGEOM_BOX;
+    geom->contype |= kMeetsCar;
     Eigen::Vector3d::Map(geom->size) = obstacle.size_m / 2.0;
     geom->pos[2] = obstacle.size_m.z() / 2.0;
     if (obstacle.material.empty()) continue;
@@ -145,10 +148,9 @@ void World::NameParts(const CarDescription& car, const std::vector<Obstacle>& ob
   for (const CarWheel& wheel : car.wheels) wheel_bodies[body_id(car.links[wheel.link].name)] = true;
   for (int geom = 0; geom < model_->ngeom; ++geom) {
     const int body = model_->geom_bodyid[geom];
-    const char* name = mj_id2name(model_.get(), mjOBJ_GEOM, geom);
     is_car_.push_back(model_->body_rootid[body] == base_body_);
     is_wheel_.push_back(wheel_bodies[body]);
-    is_floor_.push_back(!is_car_.back() && name != nullptr && std::string_view(name).starts_with("floor"));
+    is_floor_.push_back(!is_car_.back() && IsFloor(model_.get(), geom));
   }
   for (const Obstacle& obstacle : obstacles) obstacle_bodies_[obstacle.name] = body_id(ObstacleName(obstacle.name));
 }
@@ -186,8 +188,14 @@ void World::PutOnFloor(const WorldOptions& options) {
 void World::RefuseStartInContact(const WorldOptions& options) const {
   const Eigen::Vector3d start = options.T_world_start.translation();
   const auto refuse = [&](const std::string& part, const std::string& other) {
+    std::string notes;  // what may be the reason
+    for (const std::string& warning : warnings_) notes += "; " + warning;
+    const int geom = mj_name2id(model_.get(), mjOBJ_GEOM, other.c_str());
+    if (geom >= 0 && model_->geom_type[geom] == mjGEOM_MESH)
+      notes += "; a closed mesh is solid within, a shell to drive in has an open side or faces that look inward";
     throw InputError(options.room.string(), fmt::format("the car cannot start at x {} m, y {} m", start.x(), start.y()),
-                     "a free place", fmt::format("its {} in '{}'", part, other));
+                     "a free place",
+                     fmt::format("its {} in '{}'{}", part, other, notes));
   };
   if (const auto touches = CarTouches(); !touches.empty()) refuse(touches[0].car_geom, touches[0].other_geom);
   // A part wholly inside a solid has no contact with its surface.
@@ -197,7 +205,7 @@ void World::RefuseStartInContact(const WorldOptions& options) const {
       const bool meets = (model_->geom_contype[part] & model_->geom_conaffinity[other]) != 0 ||
                          (model_->geom_contype[other] & model_->geom_conaffinity[part]) != 0;
       if (meets && !is_car_[other] && IsInside(model_.get(), data_.get(), other, data_->geom_xpos + 3 * part))
-        refuse(GeomName(model_.get(), part), GeomName(model_.get(), other));
+        refuse(GeomName(model_.get(), part), SeenName(model_.get(), other));
     }
   }
 }
@@ -278,7 +286,7 @@ std::vector<Touch> World::CarTouches() const {
     if (car < 0 || other < 0 || contact.dist > 0.0) continue;  // flexes have no geom
     if (!is_car_[car]) std::swap(car, other);
     if (!is_car_[car] || is_car_[other] || (is_wheel_[car] && is_floor_[other])) continue;
-    touches.push_back({GeomName(model_.get(), car), GeomName(model_.get(), other)});
+    touches.push_back({GeomName(model_.get(), car), SeenName(model_.get(), other)});
   }
   return touches;
 }

@@ -37,7 +37,7 @@ struct WorldOptions {
   std::vector<Obstacle> obstacles{};
   bool curtain_closed = false;  // geoms named "curtain*" hang where the room has them (true), or are not there (false)
   DrivetrainConfig drivetrain{};  // how the true car and its drive differ from the description
-  Materials materials{};          // of the floors: their grip
+  Materials materials{};          // of the room: the grip of floors, what can be driven through
   std::uint64_t seed = 1;
   std::optional<double> stand_rate_rad_s{};  // the car stands on a turntable that turns as fast as this, > 0
 };
@@ -50,9 +50,10 @@ struct Touch {
 
 class World {
  public:
-  // Throws InputError: a room that is missing or not MJCF (with its line where MuJoCo knows it), a missing mesh, a room
+  // The car touches whatever of the room its cameras see (sim/solid.h), and nothing of the room changes the car. Throws
+  // InputError: a room that is missing or not MJCF (with its line where MuJoCo knows it), a missing mesh, a room
   // without a geom named "floor*", a curtain to close where there is none, a car that starts off the floor, in contact
-  // with anything else or inside it, a drivetrain out of its ranges, a surface that is no material. Physics options (step, integrator, solver) are ours, whatever the room says.
+  // with anything else or inside it, a drivetrain out of its ranges, a surface that is no material, a geom that cannot be made solid. Physics options (step, integrator, solver) are ours, whatever the room says.
   // Errors of MuJoCo itself throw std::runtime_error from then on, in the whole process; it prints and logs nothing.
   explicit World(const WorldOptions& options);
   ~World();
@@ -89,6 +90,9 @@ class World {
   const PanServo* pan() const { return pan_ ? &*pan_ : nullptr; }
   Turntable* stand() { return stand_ ? &*stand_ : nullptr; }
 
+  // What of the room is other than it seems, a sentence each.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
   // The outer outline of the room ("plan_xy_m"), empty if the room gives none; yaw of magnetic north.
   const std::vector<Eigen::Vector2d>& plan_xy_m() const { return plan_xy_m_; }
   double north_yaw_rad() const { return north_yaw_rad_; }
@@ -119,6 +123,7 @@ class World {
   int base_body_ = -1, pan_body_ = -1;
   double wheel_radius_m_ = 0.0;
   std::vector<bool> is_car_, is_wheel_, is_floor_;  // by geom
+  std::vector<std::string> warnings_;
   std::map<std::string, int> obstacle_bodies_;
   std::vector<Eigen::Vector2d> plan_xy_m_;
   double north_yaw_rad_ = 0.0;

@@ -60,6 +60,22 @@ TEST(ReadMaterials, IgnoresAByteOrderMark) {
   EXPECT_DOUBLE_EQ(ReadMaterials(file.path()).Find("white_wall").nir_albedo, 0.8);
 }
 
+TEST(ReadMaterials, KnowsWhatIsPassable) {
+  const TemporaryFile file(
+      "materials:\n"
+      "  cloth: {nir_albedo: 0.8, passable: true}\n"
+      "  board: {nir_albedo: 0.8, passable: false}\n"
+      "  wall: {nir_albedo: 0.8}\n");
+  const Materials materials = ReadMaterials(file.path());
+  EXPECT_TRUE(materials.Find("cloth").passable);
+  EXPECT_FALSE(materials.Find("board").passable);
+  EXPECT_FALSE(materials.Find("wall").passable);
+  EXPECT_FALSE(materials.Find("never heard of").passable);
+  ExpectContains(ErrorOf("materials:\n  cloth: {nir_albedo: 0.8, passable: 7}\n"),
+                 ":2: passable of material 'cloth'; expected true or false, got 7");
+  ExpectContains(ErrorOf("materials:\n  cloth: {nir_albedo: 0.8, passable: [true]}\n"), "passable of material 'cloth'");
+}
+
 TEST(ReadMaterials, HasHalfAsDefaultWhenTheFileGivesNone) {
   const TemporaryFile file("materials: {}\n");
   EXPECT_DOUBLE_EQ(ReadMaterials(file.path()).Find("wall").nir_albedo, 0.5);
