@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kGrid_m = 0.025;
 constexpr int kGridMax = 64;
-constexpr double kInfinitePlane_m = 50.0;
+constexpr double kSampledPlane_m = 50.0;
 constexpr double kFacesUp = 0.7;  // z of a plane's normal from where on one can stand on it
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -71,7 +71,7 @@ Points PointsInFrame(const mjModel* model, int geom) {
   Points points;
   switch (model->geom_type[geom]) {
     case mjGEOM_PLANE: {
-      const auto half = [&](int axis) { return size[axis] > 0.0 ? size[axis] : kInfinitePlane_m; };
+      const auto half = [&](int axis) { return size[axis] > 0.0 ? size[axis] : kSampledPlane_m; };
       AddRectangle(points, {0, 0, 0}, half(0) * Eigen::Vector3d::UnitX(), half(1) * Eigen::Vector3d::UnitY());
       break;
     }

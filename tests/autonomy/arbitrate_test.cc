@@ -6,21 +6,12 @@
 #include <limits>
 #include <numbers>
 
+#include "tests/autonomy/car.h"
+
 namespace merlin {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-CarDescription Car() {
-  CarDescription car;
-  car.wheelbase_m = 0.33;
-  car.steering_max_rad = 25.0 * std::numbers::pi / 180.0;
-  car.links.resize(1);
-  car.links[0].name = "base_link";
-  car.links[0].collision.resize(1);
-  car.links[0].collision[0].size_m = {0.9, 0.3, 0.2};
-  return car;
-}
 
 constexpr Time kNow = std::chrono::seconds(10);
 

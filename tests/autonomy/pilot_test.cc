@@ -5,19 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/autonomy/car.h"
+
 namespace merlin {
 namespace {
-
-CarDescription Car() {
-  CarDescription car;
-  car.wheelbase_m = 0.33;
-  car.steering_max_rad = 25.0 * std::numbers::pi / 180.0;
-  car.links.resize(1);
-  car.links[0].name = "base_link";
-  car.links[0].collision.resize(1);
-  car.links[0].collision[0].size_m = {0.9, 0.3, 0.2};
-  return car;
-}
 
 // A corridor along x, 2 m wide, its middle at y = 0, as the local map of a SLAM that stands at a pose.
 Slam InCorridor(const Pose& T_map_base) {

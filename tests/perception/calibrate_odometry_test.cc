@@ -6,18 +6,10 @@
 #include <numbers>
 #include <random>
 
+#include "tests/perception/car.h"
+
 namespace merlin {
 namespace {
-
-CarDescription Car() {
-  CarDescription car;
-  car.wheelbase_m = 0.33;
-  car.track_m = 0.26;
-  car.wheel_radius_m = 0.055;
-  car.drivetrain.gear = 10.0;
-  car.drivetrain.encoder_counts_per_motor_turn = 512;
-  return car;
-}
 
 constexpr CarCalibration kTrue{.wheel_radius_m = 0.0538, .wheelbase_m = 0.341, .steering_offset_rad = 0.02};
 

@@ -7,20 +7,12 @@
 #include <random>
 #include <vector>
 
+#include "tests/perception/car.h"
+
 namespace merlin {
 namespace {
 
 using std::numbers::pi;
-
-CarDescription Car() {
-  CarDescription car;
-  car.wheelbase_m = 0.33;
-  car.track_m = 0.26;
-  car.wheel_radius_m = 0.055;
-  car.drivetrain.gear = 10.0;
-  car.drivetrain.encoder_counts_per_motor_turn = 512;
-  return car;
-}
 
 // Path of each wheel on a circle about a point on the rear axle's line, from plane geometry; mean over the rear middle's.
 double MeanOfFourWheels(double steering_rad) {

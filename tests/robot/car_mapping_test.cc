@@ -4,17 +4,12 @@
 
 #include "robot/description/description.h"
 #include "robot/types/error.h"
-#include "tests/robot/foreign_cars.h"
+#include "tests/robot/car_text.h"
 
 namespace merlin {
 namespace {
 
-// The text with the first `from` replaced; from must be there.
-std::string Replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
+using namespace car_text;
 
 // What the rover's description says with these two files; empty if it is accepted.
 std::string RoverError(const std::string& urdf, const std::string& mapping) {

@@ -12,10 +12,13 @@
 #include <set>
 
 #include "robot/types/error.h"
+#include "tests/robot/car_text.h"
 #include "tests/robot/mesh_text.h"
 
 namespace merlin {
 namespace {
+
+using namespace car_text;
 
 namespace fs = std::filesystem;
 
@@ -24,18 +27,6 @@ fs::path Model(const std::string& name) { return fs::path(MERLIN_SOURCE_DIR) / "
 std::string Text(const fs::path& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// The text with the first `from` replaced; from must be there.
-std::string Replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
-
-int LineOf(const std::string& text, const std::string& part) {
-  return 1 +
-         static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(part)), '\n'));
 }
 
 // What the InputError of a call says; empty if there is none.
@@ -47,11 +38,6 @@ std::string ErrorOf(Call call) {
     return error.what();
   }
   return "";
-}
-
-void ExpectSays(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts)
-    EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' not in: " << text;
 }
 
 class Description : public testing::Test {

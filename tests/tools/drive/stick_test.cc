@@ -7,8 +7,8 @@
 namespace merlin {
 namespace {
 
-constexpr HandLimits kLimits{.speed_m_s = 0.8, .steering_rad = 0.4};
-constexpr Time kNow = std::chrono::seconds(3);
+constexpr HandLimits kStickLimits{.speed_m_s = 0.8, .steering_rad = 0.4};
+constexpr Time kStickTime = std::chrono::seconds(3);
 
 joystick::State At(double right, double back) {
   joystick::State state;
@@ -18,69 +18,69 @@ joystick::State At(double right, double back) {
 }
 
 TEST(Stick, SteersLeftToTheLeftAndDrivesAheadToTheFront) {
-  Stick stick(kLimits);
-  ManualWish wish = stick.Update(At(-1.0, -1.0), true, kNow);
+  Stick stick(kStickLimits);
+  ManualWish wish = stick.Update(At(-1.0, -1.0), true, kStickTime);
   EXPECT_TRUE(wish.held);
   EXPECT_DOUBLE_EQ(wish.steering_rad, 0.4);
   EXPECT_DOUBLE_EQ(wish.speed_m_s, 0.8);
-  EXPECT_EQ(wish.heard, kNow);
-  wish = stick.Update(At(1.0, 1.0), true, kNow);
+  EXPECT_EQ(wish.heard, kStickTime);
+  wish = stick.Update(At(1.0, 1.0), true, kStickTime);
   EXPECT_DOUBLE_EQ(wish.steering_rad, -0.4);
   EXPECT_DOUBLE_EQ(wish.speed_m_s, -0.8);
 }
 
 TEST(Stick, IsLetGoInTheMiddleAndStartsFromZeroBeyondTheDeadZone) {
-  Stick stick(kLimits);
+  Stick stick(kStickLimits);
   for (const double rest : {0.0, 0.11, -0.11}) {
-    const ManualWish wish = stick.Update(At(rest, rest), true, kNow);
+    const ManualWish wish = stick.Update(At(rest, rest), true, kStickTime);
     EXPECT_FALSE(wish.held) << rest;
     EXPECT_EQ(wish.speed_m_s, 0.0);
     EXPECT_EQ(wish.steering_rad, 0.0);
   }
-  const ManualWish wish = stick.Update(At(0.0, -0.13), true, kNow);
+  const ManualWish wish = stick.Update(At(0.0, -0.13), true, kStickTime);
   EXPECT_TRUE(wish.held);
   EXPECT_NEAR(wish.speed_m_s, 0.8 * 0.01 / 0.88, 1e-12);
-  EXPECT_NEAR(stick.Update(At(0.0, -0.56), true, kNow).speed_m_s, 0.4, 1e-12);  // half of what is left of the way
+  EXPECT_NEAR(stick.Update(At(0.0, -0.56), true, kStickTime).speed_m_s, 0.4, 1e-12);  // half of what is left of the way
 }
 
 TEST(Stick, SwitchesAutonomyAtEachPressAndOverridesWhileHeld) {
-  Stick stick(kLimits);
+  Stick stick(kStickLimits);
   joystick::State state;
   state.buttons[Stick::kAutonomyButton] = true;
-  EXPECT_FALSE(stick.Update(state, true, kNow).autonomy) << "it was down before";
+  EXPECT_FALSE(stick.Update(state, true, kStickTime).autonomy) << "it was down before";
   state.buttons[Stick::kAutonomyButton] = false;
-  stick.Update(state, true, kNow);
+  stick.Update(state, true, kStickTime);
   state.buttons[Stick::kAutonomyButton] = true;
-  EXPECT_TRUE(stick.Update(state, true, kNow).autonomy);
-  EXPECT_TRUE(stick.Update(state, true, kNow).autonomy) << "still the same press";
+  EXPECT_TRUE(stick.Update(state, true, kStickTime).autonomy);
+  EXPECT_TRUE(stick.Update(state, true, kStickTime).autonomy) << "still the same press";
   state.buttons[Stick::kAutonomyButton] = false;
-  EXPECT_TRUE(stick.Update(state, true, kNow).autonomy);
+  EXPECT_TRUE(stick.Update(state, true, kStickTime).autonomy);
   state.buttons[Stick::kAutonomyButton] = true;
-  EXPECT_FALSE(stick.Update(state, true, kNow).autonomy);
+  EXPECT_FALSE(stick.Update(state, true, kStickTime).autonomy);
 
   state.buttons[Stick::kOverrideButton] = true;
-  EXPECT_TRUE(stick.Update(state, true, kNow).override_stop);
+  EXPECT_TRUE(stick.Update(state, true, kStickTime).override_stop);
   state.buttons[Stick::kOverrideButton] = false;
-  EXPECT_FALSE(stick.Update(state, true, kNow).override_stop);
-  EXPECT_FALSE(stick.Update(state, true, kNow).quit);
+  EXPECT_FALSE(stick.Update(state, true, kStickTime).override_stop);
+  EXPECT_FALSE(stick.Update(state, true, kStickTime).quit);
   state.buttons[Stick::kQuitButton] = true;
-  EXPECT_TRUE(stick.Update(state, true, kNow).quit);
+  EXPECT_TRUE(stick.Update(state, true, kStickTime).quit);
 }
 
 TEST(Stick, LetsGoAndAgesWhenItHasGone) {
-  Stick stick(kLimits);
-  EXPECT_TRUE(stick.Update(At(0.0, -1.0), true, kNow).held);
-  const ManualWish wish = stick.Update(At(0.0, -1.0), false, kNow + std::chrono::seconds(1));
+  Stick stick(kStickLimits);
+  EXPECT_TRUE(stick.Update(At(0.0, -1.0), true, kStickTime).held);
+  const ManualWish wish = stick.Update(At(0.0, -1.0), false, kStickTime + std::chrono::seconds(1));
   EXPECT_FALSE(wish.held);
   EXPECT_EQ(wish.speed_m_s, 0.0);
-  EXPECT_EQ(wish.heard, kNow);
+  EXPECT_EQ(wish.heard, kStickTime);
 }
 
 TEST(Stick, NeverWishesWhatIsNoNumber) {
   for (int i = -100; i <= 100; ++i) {
-    const ManualWish wish = Stick(kLimits).Update(At(i / 100.0, -i / 100.0), true, kNow);
-    EXPECT_LE(std::abs(wish.speed_m_s), kLimits.speed_m_s);
-    EXPECT_LE(std::abs(wish.steering_rad), kLimits.steering_rad);
+    const ManualWish wish = Stick(kStickLimits).Update(At(i / 100.0, -i / 100.0), true, kStickTime);
+    EXPECT_LE(std::abs(wish.speed_m_s), kStickLimits.speed_m_s);
+    EXPECT_LE(std::abs(wish.steering_rad), kStickLimits.steering_rad);
   }
 }
 
