@@ -202,8 +202,7 @@ void Slam::SearchLoop(const Observation& observation, Pose& T_map_base) {
   Correct(*corrected);
 }
 
-// Takes over the corrected poses, and makes the local map anew, for the next frame is registered against it; the grid has
-// time.
+// Takes over the corrected poses. The local map is made anew at once, because the next frame is registered against it.
 void Slam::Correct(const std::vector<Pose>& corrected) {
   for (std::size_t i = 0; i < corrected.size(); ++i) keyframes_[i].T_map_base = corrected[i];
   grid_.Renew();

@@ -89,8 +89,9 @@ class Slam {
   // Registration takes back (or adds) this share of the way that the wheels report, of late.
   bool slipping() const { return std::abs(slip_) > config_.slip_min; }
   const VoxelMap& local_map() const { return local_; }
-  // After a closed loop it still shows the key frames where they were believed before, for KeyframeGrid::kFrames frames at
-  // most; poses, key frames and the local map are corrected at once.
+  // A closed loop corrects poses, key frames and the local map at once. The grid follows later, so that no frame takes long:
+  // it shows former key frames where they were believed before for up to 40 frames (KeyframeGrid::kFrames; 2 s at 20 Hz),
+  // and up to 80 where the next loop is closed meanwhile. New key frames are in it at once.
   const OccupancyGrid& occupancy() const { return grid_.grid(); }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const std::vector<MapPose>& online() const { return online_; }  // one pose a frame, as the car drove by it

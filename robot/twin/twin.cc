@@ -199,7 +199,7 @@ sim::WorldOptions WorldOf(const TwinOptions& options) {
   return world;
 }
 
-// How many there are of, for 0. On one core too: there they take as long as one.
+// On a single core as well: there three threads take no more processor time than one.
 int ThreadsOf(const TwinOptions& options) {
   return options.threads > 0 ? options.threads : options.color ? 3 : 2;
 }

@@ -47,7 +47,10 @@ int Bench(const Arguments&) { throw MachineError("this build has no twin (MERLIN
 void AddBench(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* bench = app.add_subcommand("bench", "how long things take on this machine");
-  bench->add_option("what", arguments->what, "camera: frames and rays in corridor_26x21; physics: steps in room_7x10; slam: filter to pose, and a lap that closes a loop")
+  bench
+      ->add_option("what", arguments->what,
+                   "camera: frames and rays in corridor_26x21; physics: steps in room_7x10; slam: filter to pose, and a lap "
+                   "that closes a loop")
       ->required()
       ->check(CLI::IsMember({"camera", "physics", "slam"}));
   bench->add_option("--threads", arguments->threads, "of the cameras, measured beside one thread; default 2")

@@ -178,7 +178,10 @@ void AddDrive(CLI::App& app, int& exit_code) {
       ->check(NotEmpty);
   drive->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")
       ->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
-  drive->add_option("--threads", arguments->threads, "same bits for any number; default one for each camera, and one")->check(CLI::Range(1, 256));
+  drive
+      ->add_option("--threads", arguments->threads,
+                   "same bits for any number; default: one for the loop, and one for each camera")
+      ->check(CLI::Range(1, 256));
   drive->add_option("--set", arguments->sets, "a.b=c, over the scenario's file; may be repeated")
       ->allow_extra_args(false);
   drive->callback([arguments, &exit_code] { exit_code = Drive(*arguments); });

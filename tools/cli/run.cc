@@ -172,7 +172,10 @@ void AddRun(CLI::App& app, int& exit_code) {
                   "twin (default); emulated: the twin behind the real drivers and protocols, in real time; or hardware:FILE, which names the car's devices");
   run->add_option("--pace", arguments->pace, "fast (default), real, or a factor of real time");
   run->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
-  run->add_option("--threads", arguments->threads, "same bits for any number; default one for each camera, and one")->check(CLI::Range(1, 256));
+  run
+      ->add_option("--threads", arguments->threads,
+                   "same bits for any number; default: one for the loop, and one for each camera")
+      ->check(CLI::Range(1, 256));
   run->add_option("--set", arguments->sets, "a.b=c, over the scenario's file; may be repeated")->allow_extra_args(false);
   run->add_option("--duration", arguments->duration_s, "seconds, instead of the scenario's")->check(NotEmpty);
   run->add_flag("--json", arguments->json, "print result.json instead of the summary");
