@@ -28,8 +28,8 @@ ColorCameraSheet NoiseFree(const CameraModel& camera) {
 ColorSettings Fixed(double exposure_s) { return {.exposure_s = exposure_s, .auto_exposure = false}; }
 
 // A MuJoCo model at its initial state; everything in it glows, nothing is lit.
-struct World {
-  explicit World(const std::string& body) {
+struct SmallWorld {
+  explicit SmallWorld(const std::string& body) {
     const std::string xml =
         "<mujoco><visual><headlight ambient='0 0 0' diffuse='0 0 0' specular='0 0 0'/></visual><asset>"
         "<material name='white' rgba='1 1 1 1' emission='1'/><material name='dim' rgba='.2 .2 .2 1' emission='1'/>"
@@ -42,7 +42,7 @@ struct World {
     data = mj_makeData(model);
     mj_forward(model, data);
   }
-  ~World() {
+  ~SmallWorld() {
     mj_deleteData(data);
     mj_deleteModel(model);
   }
@@ -92,7 +92,7 @@ class ColorCameraTest : public testing::Test {
  protected:
   void SetUp() override {
     try {
-      const World world("");
+      const SmallWorld world("");
       const ColorCamera camera(world.model, NoiseFree(kSmall), Gl::kAuto, 1, false);
     } catch (const MachineError& error) {
       GTEST_SKIP() << error.what();
@@ -116,7 +116,7 @@ TEST_F(ColorCameraTest, PutsMarkersWhereOpenCvsModelProjectsThem) {
         points_camera.push_back(point_camera);
       }
     ASSERT_GT(points_camera.size(), 25u);
-    const World world(markers);
+    const SmallWorld world(markers);
     ColorCamera camera(world.model, NoiseFree(model), Gl::kAuto, 1, false);
     auto shot = camera.Take(world.model, world.data, {.T_world_body = T_world_camera});
     const ColorFrame frame = camera.Expose(*shot, Fixed(0.02), Time{7}, 3);
@@ -135,7 +135,7 @@ TEST_F(ColorCameraTest, PutsMarkersWhereOpenCvsModelProjectsThem) {
 constexpr char kDimWall[] = "<geom type='box' size='.1 9 9' material='dim' pos='3 0 0'/>";
 
 TEST_F(ColorCameraTest, ExposesByTheFrameBefore) {
-  const World world(kDimWall);
+  const SmallWorld world(kDimWall);
   const ColorCameraSheet sheet = NoiseFree(kSmall);
   ColorCamera camera(world.model, sheet, Gl::kAuto, 1, false);
   const auto expose = [&](const ColorSettings& settings) {
@@ -155,7 +155,7 @@ TEST_F(ColorCameraTest, ExposesByTheFrameBefore) {
 }
 
 TEST_F(ColorCameraTest, BlursWhatItPassesAndOnlyIfAskedTo) {
-  const World world("<geom type='box' size='.01 .1 .5' material='white' pos='2 0 0'/>");
+  const SmallWorld world("<geom type='box' size='.01 .1 .5' material='white' pos='2 0 0'/>");
   const CameraModel model{.width = 320, .height = 32, .fx_px = 400.0, .fy_px = 400.0, .cx_px = 159.5, .cy_px = 15.5};
   // To the left at 4 m/s for 20 ms: 8 cm, which are 16 px at 1.99 m; the bar itself is 40 px wide.
   const BodyMotion moving{.T_world_body = CameraAt({0, 0, 0}), .velocity_m_s = {0, 4, 0}};
@@ -178,7 +178,7 @@ TEST_F(ColorCameraTest, BlursWhatItPassesAndOnlyIfAskedTo) {
 }
 
 TEST_F(ColorCameraTest, BlursAboutTheMiddleOfTheExposureInLinearLight) {
-  const World world("<geom type='box' size='.01 .1 .5' material='white' pos='2 0 0'/>");
+  const SmallWorld world("<geom type='box' size='.01 .1 .5' material='white' pos='2 0 0'/>");
   const CameraModel model{.width = 320, .height = 32, .fx_px = 400.0, .fy_px = 400.0, .cx_px = 159.5, .cy_px = 15.5};
   ColorCamera camera(world.model, NoiseFree(model), Gl::kAuto, 1, true);
   // Half exposed, so that full light is one half and clips nowhere; turning about the vertical axis.

@@ -10,6 +10,8 @@ namespace merlin {
 
 enum class Align { kLeft, kMiddle, kRight };
 
+inline const cv::Scalar kInk(45, 40, 38);  // of text and axes; blue, green, red
+
 class Canvas {
  public:
   Canvas(int width_px, int height_px);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kWidth_px = 1300, kHeader_px = 96, kPanel_px = 540;
 constexpr double kLeft_px = 92, kRight_px = 960, kTop_px = 34, kBottom_px = 470;  // of a panel's plot
-const cv::Scalar kInk(45, 40, 38), kGrid(230, 230, 228), kPlot(250, 250, 250);
+const cv::Scalar kGrid(230, 230, 228), kPlot(250, 250, 250);
 const std::array<cv::Scalar, 6> kColors{cv::Scalar(180, 119, 31), cv::Scalar(40, 39, 214),   cv::Scalar(44, 160, 44),
                                         cv::Scalar(14, 127, 255), cv::Scalar(189, 103, 148), cv::Scalar(75, 86, 140)};
 

@@ -15,7 +15,6 @@ namespace {
 constexpr double kImage_px = 620;  // the longer edge of each picture, about
 constexpr double kMargin_px = 40, kTitle_px = 100, kCaption_px = 34, kBar_px = 160;
 constexpr double kOutliers = 0.02;  // of the pixels may lie beyond a scale's end
-const cv::Scalar kInk(45, 40, 38);
 const cv::Vec3b kNothing(150, 150, 150);
 
 using Ramp = std::array<cv::Vec3b, 256>;

@@ -15,7 +15,7 @@
 namespace merlin::cli {
 namespace {
 
-struct Arguments {
+struct BenchArguments {
   std::string what;
   int threads = 2;
   bool json = false;
@@ -30,7 +30,7 @@ int Print(const Result& bench, bool json) {
   return kPass;
 }
 
-int Bench(const Arguments& arguments) {
+int Bench(const BenchArguments& arguments) {
   if (arguments.what == "physics") return Print(BenchPhysics(interrupted), arguments.json);
   if (arguments.what == "slam") return Print(BenchSlam(interrupted), arguments.json);
   return Print(BenchCamera(arguments.threads, interrupted), arguments.json);
@@ -38,14 +38,14 @@ int Bench(const Arguments& arguments) {
 
 #else
 
-int Bench(const Arguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
+int Bench(const BenchArguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
 
 #endif
 
 }  // namespace
 
 void AddBench(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<BenchArguments>();
   CLI::App* bench = app.add_subcommand("bench", "how long things take on this machine");
   bench
       ->add_option("what", arguments->what,

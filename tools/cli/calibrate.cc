@@ -25,7 +25,7 @@
 namespace merlin::cli {
 namespace {
 
-struct Arguments {
+struct CalibrateArguments {
   std::string drives, robot, scenario = "corridor_short", out = "calibration.yaml";
   std::vector<std::string> sets;
   bool study = false, json = false;
@@ -54,7 +54,7 @@ void Print(const CarDescription& car, const OdometryCalibration& found, const Ca
       truth.steering_offset_rad);
 }
 
-void Finish(const Arguments& arguments, const CarDescription& car, const OdometryCalibration& found,
+void Finish(const CalibrateArguments& arguments, const CarDescription& car, const OdometryCalibration& found,
             const CarDescription* true_car) {
   WriteFile(arguments.out, ToYaml(found.value));
   if (arguments.json) {
@@ -72,12 +72,12 @@ void Finish(const Arguments& arguments, const CarDescription& car, const Odometr
 
 #if MERLIN_TWIN
 
-sim::WorldOptions TwinOf(const Arguments& arguments, std::vector<std::string> sets) {
+sim::WorldOptions TwinOf(const CalibrateArguments& arguments, std::vector<std::string> sets) {
   sets.insert(sets.end(), arguments.sets.begin(), arguments.sets.end());
   return OnOpenFloor(ReadScenario(arguments.scenario, sets));
 }
 
-int CalibrateTwin(const Arguments& arguments) {
+int CalibrateTwin(const CalibrateArguments& arguments) {
   const sim::WorldOptions twin = TwinOf(arguments, {});
   CarDescription true_car = sim::TrueCar(twin.car, twin.drivetrain);
   true_car.steering_offset_rad = twin.drivetrain.steering_offset_rad;
@@ -86,7 +86,7 @@ int CalibrateTwin(const Arguments& arguments) {
 }
 
 // A car that is off its description by what a careless assembly leaves, on every floor there is.
-int Study(const Arguments& arguments) {
+int StudyOdometry(const CalibrateArguments& arguments) {
   constexpr double kLimit_percent = 1.0;
   const sim::Materials materials = sim::ReadMaterials(Home() / "models/materials.yaml");
   bool pass = true;
@@ -121,17 +121,17 @@ int Study(const Arguments& arguments) {
 
 #else
 
-int CalibrateTwin(const Arguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
-int Study(const Arguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
+int CalibrateTwin(const CalibrateArguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
+int StudyOdometry(const CalibrateArguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
 
 #endif
 
-int Calibrate(const Arguments& arguments) {
+int Calibrate(const CalibrateArguments& arguments) {
   const int sources = (arguments.drives.empty() ? 0 : 1) + (arguments.robot.empty() ? 0 : 1) + (arguments.study ? 1 : 0);
   if (sources != 1)
     throw InputError("calibrate odometry", "what is it to calibrate from?", "one of a file of drives, --robot twin or --study",
                      sources == 0 ? "none" : "several");
-  if (arguments.study) return Study(arguments);
+  if (arguments.study) return StudyOdometry(arguments);
   CheckOutputFile(arguments.out);
   if (!arguments.robot.empty()) return CalibrateTwin(arguments);
   const CarDescription car = ReadCar(CarFile(ReadScenario(arguments.scenario, arguments.sets).car.model));
@@ -142,7 +142,7 @@ int Calibrate(const Arguments& arguments) {
 }  // namespace
 
 void AddCalibrate(CLI::App& app, int& exit_code) {
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<CalibrateArguments>();
   CLI::App* calibrate = app.add_subcommand("calibrate", "finds the values that a description only estimates");
   calibrate->require_subcommand(1);
   CLI::App* odometry = calibrate->add_subcommand("odometry", "wheel radius, wheelbase and steering offset, from drives");

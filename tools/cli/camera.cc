@@ -24,7 +24,7 @@
 namespace merlin::cli {
 namespace {
 
-struct Arguments {
+struct CameraArguments {
   std::string model, room, pose, curtain, out, study;
   std::optional<std::string> frequency_mhz, effects;
   std::optional<double> wall_m, albedo, tilt_deg, integration_us, sun_w_m2_nm;
@@ -69,7 +69,7 @@ Pose ReadPose(const std::string& text) {
 }
 
 // What is not asked for is 1000 us and 20 MHz, or the nearest the model has.
-DepthSettings SettingsOf(const Arguments& arguments, const DepthCameraSheet& sheet) {
+DepthSettings SettingsOf(const CameraArguments& arguments, const DepthCameraSheet& sheet) {
   DepthSettings usual = NearestSettings(sheet, {}), asked = usual;
   if (arguments.integration_us) asked.integration_s = *arguments.integration_us * 1e-6;
   if (arguments.frequency_mhz) {
@@ -94,7 +94,7 @@ DepthSettings SettingsOf(const Arguments& arguments, const DepthCameraSheet& she
 }
 
 // Each scene has its own options.
-void RefuseMixtures(const Arguments& a) {
+void RefuseMixtures(const CameraArguments& a) {
   const auto refuse = [](bool given, const char* option, const char* belongs_to) {
     if (given) throw InputError(option, std::string("belongs to ") + belongs_to);
   };
@@ -114,7 +114,7 @@ void RefuseMixtures(const Arguments& a) {
     throw InputError("--room", "where in it does the camera stand?", "--pose x,y,z,roll,pitch,yaw");
 }
 
-Stage StageOf(const Arguments& a) {
+Stage StageOf(const CameraArguments& a) {
   if (a.wall_m)
     return WallStage({.distance_m = *a.wall_m,
                       .albedo = a.albedo.value_or(0.5),
@@ -127,7 +127,7 @@ Stage StageOf(const Arguments& a) {
                     .sun_w_m2_nm = a.sun_w_m2_nm});
 }
 
-int Shoot(const Arguments& arguments, const Shooting& shooting, const std::string& effects) {
+int Shoot(const CameraArguments& arguments, const Shooting& shooting, const std::string& effects) {
   const Stage stage = StageOf(arguments);
   OutputFolder folder(arguments.out.empty() ? "runs/camera-" + shooting.sheet.name : arguments.out);
   const Measurement m = Measure(shooting, stage.View(), interrupted);
@@ -145,7 +145,7 @@ int Shoot(const Arguments& arguments, const Shooting& shooting, const std::strin
   return kPass;
 }
 
-int DrawStudy(const Arguments& arguments, const Shooting& shooting) {
+int DrawStudy(const CameraArguments& arguments, const Shooting& shooting) {
   const std::string& name = arguments.study;
   CheckStudyName(name);
   OutputFolder folder(arguments.out.empty() ? "runs/camera-" + shooting.sheet.name + "-" + name : arguments.out);
@@ -166,7 +166,7 @@ int DrawStudy(const Arguments& arguments, const Shooting& shooting) {
   return kPass;
 }
 
-int Camera(const Arguments& arguments) {
+int Camera(const CameraArguments& arguments) {
   RefuseMixtures(arguments);
   if (!arguments.study.empty()) CheckStudyName(arguments.study);
   const std::filesystem::path file = DepthCameraFile(arguments.model);
@@ -183,7 +183,7 @@ int Camera(const Arguments& arguments) {
 
 #else
 
-int Camera(const Arguments& arguments) {
+int Camera(const CameraArguments& arguments) {
   (void)DepthCameraFile(arguments.model);
   throw MachineError("this build has no twin (MERLIN_TWIN=OFF)");
 }
@@ -193,7 +193,7 @@ int Camera(const Arguments& arguments) {
 }  // namespace
 
 void AddCamera(CLI::App& app, int& exit_code) {
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<CameraArguments>();
   CLI::App* camera = app.add_subcommand("camera", "frames of one simulated time-of-flight camera, with their truth");
   camera->add_option("model", a->model, "a name in models/cameras/, or a path")->required();
   camera->add_option("--wall", a->wall_m, "look at a wall this many metres ahead");

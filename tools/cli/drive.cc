@@ -29,7 +29,7 @@
 namespace merlin::cli {
 namespace {
 
-struct Arguments {
+struct DriveArguments {
   std::string scenario = "corridor_loop", out, robot = "twin", gl = "auto", joystick, seed;
   std::string duration_s = "3600";  // the scenario's reader checks it
   double speed_m_s = HandLimits{}.speed_m_s;
@@ -47,7 +47,7 @@ constexpr char kStickHelp[] = "stick drives, button 0 overrides the obstacle sto
 // The operator's end: what his hand is on.
 class Station {
  public:
-  Station(const Arguments& arguments, const HandLimits& limits) : keys_(limits), stick_(limits) {
+  Station(const DriveArguments& arguments, const HandLimits& limits) : keys_(limits), stick_(limits) {
     if (arguments.joystick.empty())
       terminal_.emplace(STDIN_FILENO);
     else
@@ -96,7 +96,7 @@ class StatusLine {
   ProgressLine line_;
 };
 
-RunOptions OptionsOf(const Arguments& arguments) {
+RunOptions OptionsOf(const DriveArguments& arguments) {
   RunOptions options;
   options.name = std::filesystem::path(arguments.scenario).stem().string();
   std::vector<std::string> sets = arguments.sets;
@@ -114,7 +114,7 @@ RunOptions OptionsOf(const Arguments& arguments) {
   return options;
 }
 
-int Drive(const Arguments& arguments) {
+int Drive(const DriveArguments& arguments) {
   RunOptions options = OptionsOf(arguments);
   const CarDescription car = ReadCar(CarFile(options.scenario.car.model));
   const HandLimits limits{std::min(arguments.speed_m_s, car.drivetrain.speed_max_m_s), car.steering_max_rad};
@@ -143,7 +143,7 @@ int Drive(const Arguments& arguments) {
 
 #else
 
-int Drive(const Arguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
+int Drive(const DriveArguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
 
 #endif
 
@@ -156,7 +156,7 @@ std::string TopSpeed(const std::string& text) {
 }  // namespace
 
 void AddDrive(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<DriveArguments>();
   CLI::App* drive = app.add_subcommand("drive", "drives by hand, in real time; the car maps as it goes");
   drive->add_option("scenario", arguments->scenario, "where: a name in scenarios/, or a path; default corridor_loop");
   CLI::Option* joystick = drive->add_option("--joystick", arguments->joystick,

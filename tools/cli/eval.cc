@@ -20,7 +20,7 @@
 namespace merlin::cli {
 namespace {
 
-struct Arguments {
+struct EvalArguments {
   std::string truth, estimate, align = "se3";
   double delta_m = 1.0, max_difference_s = 0.02;
   bool json = false;
@@ -51,7 +51,7 @@ bool InOnePlace(const std::vector<PosePair>& pairs, Pose PosePair::* side) {
 }
 
 // Three positions at least, and not all the same, are what an alignment and a figure need.
-void CheckPairs(const Arguments& arguments, const std::vector<PosePair>& pairs) {
+void CheckPairs(const EvalArguments& arguments, const std::vector<PosePair>& pairs) {
   if (pairs.size() < 3)
     throw InputError(arguments.estimate, "too few pairs for a figure",
                      fmt::format("3 or more stamps within {} s of one of {}", arguments.max_difference_s,
@@ -64,7 +64,7 @@ void CheckPairs(const Arguments& arguments, const std::vector<PosePair>& pairs) 
                                          pairs.size()), "a path");
 }
 
-Evaluation Evaluate(const Arguments& arguments) {
+Evaluation Evaluate(const EvalArguments& arguments) {
   const auto read = [](const std::string& file) { return ParseTum(ReadFile(file, "a trajectory (TUM)"), file); };
   const TumFile truth = read(arguments.truth), estimate = read(arguments.estimate);
   const std::vector<PosePair> pairs =
@@ -103,7 +103,7 @@ void VisitFigures(const ErrorStatistics& error, Visit visit) {
   visit("max", error.max);
 }
 
-void PrintJson(const Arguments& arguments, const Evaluation& evaluation) {
+void PrintJson(const EvalArguments& arguments, const Evaluation& evaluation) {
   nlohmann::ordered_json whole{{"truth", arguments.truth},
                                {"estimate", arguments.estimate},
                                {"truth_poses", evaluation.truth_poses},
@@ -128,7 +128,7 @@ void PrintJson(const Arguments& arguments, const Evaluation& evaluation) {
   fmt::print("{}\n", whole.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-void PrintText(const Arguments& arguments, const Evaluation& evaluation) {
+void PrintText(const EvalArguments& arguments, const Evaluation& evaluation) {
   for (const std::string& warning : evaluation.warnings) fmt::print(stderr, "merlin: warning: {}\n", warning);
   fmt::print("{} pairs within {} s, of {} true and {} estimated poses; aligned: {}", evaluation.pairs,
              arguments.max_difference_s, evaluation.truth_poses, evaluation.estimate_poses, arguments.align);
@@ -149,7 +149,7 @@ void PrintText(const Arguments& arguments, const Evaluation& evaluation) {
   }
 }
 
-int Eval(const Arguments& arguments) {
+int Eval(const EvalArguments& arguments) {
   const Evaluation evaluation = Evaluate(arguments);
   arguments.json ? PrintJson(arguments, evaluation) : PrintText(arguments, evaluation);
   return kPass;
@@ -168,7 +168,7 @@ auto Between(double min, double max) {
 }  // namespace
 
 void AddEval(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<EvalArguments>();
   CLI::App* eval = app.add_subcommand("eval", "how far an estimated trajectory lies from the true one: ATE, RPE");
   eval->add_option("truth", arguments->truth, "'stamp_s x y z qx qy qz qw' a line (TUM)")->required();
   eval->add_option("estimate", arguments->estimate, "the same")->required();

@@ -22,7 +22,7 @@
 namespace merlin::cli {
 namespace {
 
-struct Arguments {
+struct OptimizeArguments {
   std::string graph, objective = "b", out;
   bool json = false;
 };
@@ -38,7 +38,7 @@ struct Solution {
 };
 
 // Each part of the graph by itself: what a step gains is small or not beside that part's own objective.
-Solution Solve(const Arguments& arguments) {
+Solution Solve(const OptimizeArguments& arguments) {
   const double begin_s = Now_s();
   Solution solution{.file = ParseG2o(ReadFile(arguments.graph, "a pose graph (g2o)"), arguments.graph)};
   std::vector<GraphPart> parts = PartsOf(solution.file.graph);
@@ -69,7 +69,7 @@ Solution Solve(const Arguments& arguments) {
   return solution;
 }
 
-void Print(const Arguments& arguments, const Solution& solution) {
+void Print(const OptimizeArguments& arguments, const Solution& solution) {
   const PoseGraph& graph = solution.file.graph;
   const double a = Evaluate(graph, Objective::kA), b = Evaluate(graph, Objective::kB);
   if (arguments.json) {
@@ -94,7 +94,7 @@ void Print(const Arguments& arguments, const Solution& solution) {
   if (!arguments.out.empty()) fmt::print("file: {}\n", arguments.out);
 }
 
-int RunOptimize(const Arguments& arguments) {
+int RunOptimize(const OptimizeArguments& arguments) {
   if (!arguments.out.empty()) CheckOutputFile(arguments.out);
   const Solution solution = Solve(arguments);
   if (interrupted) return kInterrupted;
@@ -106,7 +106,7 @@ int RunOptimize(const Arguments& arguments) {
 }  // namespace
 
 void AddOptimize(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<OptimizeArguments>();
   CLI::App* optimize = app.add_subcommand("optimize", "solves a pose graph (g2o); exit 1 where it does not converge");
   optimize
       ->add_option("graph", arguments->graph,

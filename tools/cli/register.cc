@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view kMethodNames[] = {"point", "plane", "gicp", "auto"};
 
-struct Arguments {
+struct RegisterArguments {
   std::string source, target, method = "auto", guess, out;
   std::optional<double> max_distance_m, voxel_m;
   bool json = false;
@@ -79,7 +79,7 @@ CloudFile ReadPoints(const std::string& file) {
                        (points.left_out ? ", with " + std::to_string(points.left_out) + " left out" : ""));
 }
 
-AlignConfig ConfigOf(const Arguments& a) {
+AlignConfig ConfigOf(const RegisterArguments& a) {
   AlignConfig config;
   config.max_distance_m = a.max_distance_m.value_or(0.0);
   config.method = static_cast<AlignMethod>(std::ranges::find(kMethodNames, a.method) - std::begin(kMethodNames));
@@ -168,7 +168,7 @@ void CheckLength(const char* option, const std::optional<double>& length_m) {
     throw InputError(option, "no such length", "metres above 0, up to 1e9", fmt::format("{:g}", *length_m));
 }
 
-int Register(const Arguments& a) {
+int Register(const RegisterArguments& a) {
   CheckLength("--max-distance", a.max_distance_m);
   CheckLength("--voxel", a.voxel_m);
   const Pose guess = ReadGuess(a.guess);
@@ -192,7 +192,7 @@ int Register(const Arguments& a) {
 }  // namespace
 
 void AddRegister(CLI::App& app, int& exit_code) {
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<RegisterArguments>();
   CLI::App* reg =
       app.add_subcommand("register", "aligns two clouds: finds T_target_source, p_target = T_target_source * p_source");
   reg->add_option("source", a->source,

@@ -20,7 +20,7 @@
 namespace merlin::cli {
 namespace {
 
-struct Arguments {
+struct RunArguments {
   std::string scenario, out, robot = "twin", pace = "fast", gl = "auto";
   std::string seed, duration_s;  // the scenario's reader checks them
   int threads = 0;
@@ -121,7 +121,7 @@ void PrintSummary(const RunReport& report, const std::filesystem::path& out) {
   fmt::print("files: {} (look at map.png)\n", out.string());
 }
 
-int Run(const Arguments& arguments) {
+int Run(const RunArguments& arguments) {
   RunOptions options;
   options.name = std::filesystem::path(arguments.scenario).stem().string();
   std::vector<std::string> sets = arguments.sets;
@@ -153,7 +153,7 @@ int Run(const Arguments& arguments) {
 
 #else
 
-int Run(const Arguments& arguments) {
+int Run(const RunArguments& arguments) {
   (void)ReadScenario(arguments.scenario, arguments.sets);
   throw MachineError("this build has no twin (MERLIN_TWIN=OFF)");
 }
@@ -163,7 +163,7 @@ int Run(const Arguments& arguments) {
 }  // namespace
 
 void AddRun(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RunArguments>();
   CLI::App* run = app.add_subcommand("run", "runs a scenario and judges it");
   run->add_option("scenario", arguments->scenario, "a name in scenarios/, or a path")->required();
   run->add_option("--seed", arguments->seed, "of all randomness; default the scenario's")->check(WholeNumber);

@@ -21,7 +21,7 @@ PhaseReading ReadingOf(const Chip& chip, const Light& light, const PixelTraits& 
 
 TEST(TofChip, TakesTheTapsOfTheFourPhaseAlgorithm) {
   // Phase 45 degrees: m = C N sqrt(1/2) (1, -1, -1, 1).
-  const FourTaps taps = ExposeFour(Chip(Pmd3k(), {}, kIdealTof), {.signal_e = 1000.0, .phase_rad = kPi / 4.0});
+  const FourTaps taps = ExposeFour(Chip(Pmd3k(), {}, kIdealTof), {.signal_e = 1000.0, .phase_rad = std::numbers::pi / 4.0});
   const double m_e = 450.0 * std::sqrt(0.5);
   const double sign[4] = {1, -1, -1, 1};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -31,7 +31,7 @@ TEST(TofChip, TakesTheTapsOfTheFourPhaseAlgorithm) {
     EXPECT_FALSE(taps[k].saturated);
   }
   const PhaseReading reading = DecodePhase(taps.data());
-  EXPECT_NEAR(reading.phase_rad, kPi / 4.0, 1e-12);
+  EXPECT_NEAR(reading.phase_rad, std::numbers::pi / 4.0, 1e-12);
   EXPECT_NEAR(reading.amplitude_e, 450.0, 1e-9);
 }
 
@@ -50,16 +50,16 @@ Taps TapsOf(double difference_e) { return {.a_e = difference_e, .b_e = 0.0}; }
 
 TEST(TofPhase, IsFoundInEveryQuadrantAndOnTheAxes) {
   for (int step = 0; step < 64; ++step) {
-    const double phase_rad = 2.0 * kPi * step / 64.0;
+    const double phase_rad = 2.0 * std::numbers::pi * step / 64.0;
     Taps taps[4];
-    for (int k = 0; k < 4; ++k) taps[k] = {.a_e = 500.0 + 7.0 * std::cos(phase_rad + k * kPi / 2.0), .b_e = 490.0};
+    for (int k = 0; k < 4; ++k) taps[k] = {.a_e = 500.0 + 7.0 * std::cos(phase_rad + k * std::numbers::pi / 2.0), .b_e = 490.0};
     EXPECT_NEAR(PhaseError_rad(DecodePhase(taps).phase_rad, phase_rad), 0.0, 1e-12) << step;
     EXPECT_NEAR(DecodePhase(taps).amplitude_e, 7.0, 1e-11);
   }
   const Taps left[4] = {TapsOf(-1), TapsOf(0), TapsOf(1), TapsOf(0)};  // I = -2, Q = 0
-  EXPECT_DOUBLE_EQ(DecodePhase(left).phase_rad, kPi);
+  EXPECT_DOUBLE_EQ(DecodePhase(left).phase_rad, std::numbers::pi);
   const Taps down[4] = {TapsOf(0), TapsOf(1), TapsOf(0), TapsOf(-1)};  // I = 0, Q = -2
-  EXPECT_DOUBLE_EQ(DecodePhase(down).phase_rad, 1.5 * kPi);
+  EXPECT_DOUBLE_EQ(DecodePhase(down).phase_rad, 1.5 * std::numbers::pi);
 }
 
 TEST(TofPhase, StaysBelowAWholeTurnAndIsZeroInTheDark) {
@@ -67,7 +67,7 @@ TEST(TofPhase, StaysBelowAWholeTurnAndIsZeroInTheDark) {
     const Taps taps[4] = {TapsOf(1), TapsOf(tiny), TapsOf(0), TapsOf(0)};  // -tiny rad
     const double phase_rad = DecodePhase(taps).phase_rad;
     EXPECT_GE(phase_rad, 0.0) << tiny;
-    EXPECT_LT(phase_rad, 2.0 * kPi) << tiny;
+    EXPECT_LT(phase_rad, 2.0 * std::numbers::pi) << tiny;
     EXPECT_NEAR(PhaseError_rad(phase_rad, -std::atan(tiny)), 0.0, 1e-15);
   }
   const Taps dark[4] = {};
@@ -80,7 +80,7 @@ TEST(TofSaturation, ClipsExactlyWhenTheFullestTapOverflows) {
   const Chip chip(Pmd3k(), {}, Only(&TofEffects::saturation));
   int clipped = 0, kept = 0;
   for (int step = 0; step < 40; ++step) {
-    const double phase_rad = 2.0 * kPi * step / 40.0;
+    const double phase_rad = 2.0 * std::numbers::pi * step / 40.0;
     const double share = (1.0 + 0.45 * std::max(std::abs(std::cos(phase_rad)), std::abs(std::sin(phase_rad)))) / 2.0;
     for (const double filling : {0.1, 0.9, 0.999999, 1.000001, 1.1, 1.5, 3.0, 100.0}) {
       const FourTaps taps = ExposeFour(chip, {.signal_e = filling * 1.5e6 / share, .phase_rad = phase_rad});
@@ -130,7 +130,7 @@ TEST(TofSaturation, LeavesTapsAloneWhenSwitchedOff) {
 
 // A facing wall of albedo 0.5, 1 m away, 1 ms, in full sun: 1e6 e of the lamp, and of 80 W/m2 against 2 W/sr 40 times
 // that.
-const Light kSunlit{.signal_e = 1e6, .phase_rad = 2.0 * kPi / kPeriod_m, .background_e = 4e7};
+const Light kSunlit{.signal_e = 1e6, .phase_rad = 2.0 * std::numbers::pi / kPeriod_m, .background_e = 4e7};
 
 TEST(TofSbi, KeepsAPixelInFullSunAliveAndRightInTheMean) {
   const TofEffects with = Only(&TofEffects::noise, &TofEffects::saturation, &TofEffects::sbi);
@@ -197,7 +197,7 @@ TEST(TofResponse, MakesAnErrorOfFourfoldPhaseThatGrowsWithAmplitude) {
     const double share = -x * 0.45 * 0.45 / 16.0 / (1.0 - 0.75 * x - 3.0 / 16.0 * x * 0.45 * 0.45);
     double peak_rad = 0.0, quadratic_rad = 0.0;
     for (int step = 0; step < 32; ++step) {
-      const Light light{.signal_e = filling * 1.5e6, .phase_rad = 2.0 * kPi * step / 32.0};
+      const Light light{.signal_e = filling * 1.5e6, .phase_rad = 2.0 * std::numbers::pi * step / 32.0};
       const double error_rad = PhaseError_rad(ReadingOf(chip, light).phase_rad, light.phase_rad);
       EXPECT_NEAR(error_rad, -share * std::sin(4.0 * light.phase_rad), 0.01 * std::abs(share) + 1e-12);
       peak_rad = std::max(peak_rad, std::abs(error_rad));

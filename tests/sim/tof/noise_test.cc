@@ -16,7 +16,7 @@ const TofEffects kNoise = Only(&TofEffects::noise);
 
 // The small-error law, written out: c / (4 sqrt(2) pi f) sqrt(N_s + N_b + 2 r^2) / (C N_s).
 double Law_m(double signal_e, double background_e, double contrast, double read_e, double frequency_hz = 20e6) {
-  return 299792458.0 / (4.0 * std::sqrt(2.0) * kPi * frequency_hz) *
+  return 299792458.0 / (4.0 * std::sqrt(2.0) * std::numbers::pi * frequency_hz) *
          std::sqrt(signal_e + background_e + 2.0 * read_e * read_e) / (contrast * signal_e);
 }
 

@@ -14,7 +14,6 @@
 
 namespace merlin::sim {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kPeriod_m = 299792458.0 / 40e6;  // of 20 MHz
 
 // A 64x48 PMD camera; all its numbers are round or those of the predictions it is compared with.
@@ -61,12 +60,12 @@ struct Light {
   double signal_e = 0.0, phase_rad = 0.0;
   double background_e = 0.0, contrast = 0.45;
   PixelLight At(int k) const {
-    return {signal_e + background_e, contrast * signal_e * std::cos(phase_rad + k * kPi / 2.0)};
+    return {signal_e + background_e, contrast * signal_e * std::cos(phase_rad + k * std::numbers::pi / 2.0)};
   }
 };
 
-inline double PhaseOf(double range_m) { return 2.0 * kPi * range_m / kPeriod_m; }
-inline double RangeOf(double phase_rad) { return kPeriod_m * phase_rad / (2.0 * kPi); }
+inline double PhaseOf(double range_m) { return 2.0 * std::numbers::pi * range_m / kPeriod_m; }
+inline double RangeOf(double phase_rad) { return kPeriod_m * phase_rad / (2.0 * std::numbers::pi); }
 
 // A facing wall: K rho T / d^2.
 inline Light WallLight(const DepthCameraSheet& sheet, double albedo, double integration_s, double range_m) {
@@ -87,7 +86,7 @@ inline FourTaps ExposeFour(const Chip& chip, const Light& light, std::uint64_t f
 
 // The shorter way round from one phase to another.
 inline double PhaseError_rad(double phase_rad, double true_rad) {
-  return std::remainder(phase_rad - true_rad, 2.0 * kPi);
+  return std::remainder(phase_rad - true_rad, 2.0 * std::numbers::pi);
 }
 
 }  // namespace merlin::sim
