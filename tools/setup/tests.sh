@@ -13,6 +13,7 @@ parse_test_arguments() {
 
 run_tests() {
   passed=0 failed=0 skipped=0
+  install_oracles
   build release
   unlock
   if [ -n "$test_name" ]; then
