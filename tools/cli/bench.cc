@@ -1,4 +1,6 @@
 // `merlin bench`: how long things take on this machine, beside what they may take.
+#include "tools/register/bench.h"
+
 #include <fmt/format.h>
 
 #include <memory>
@@ -21,8 +23,6 @@ struct Arguments {
   bool json = false;
 };
 
-#if MERLIN_TWIN
-
 template <class Result>
 int Print(const Result& bench, bool json) {
   if (interrupted) return kInterrupted;
@@ -30,7 +30,9 @@ int Print(const Result& bench, bool json) {
   return kPass;
 }
 
-int Bench(const Arguments& arguments) {
+#if MERLIN_TWIN
+
+int BenchTwin(const Arguments& arguments) {
   if (arguments.what == "physics") return Print(BenchPhysics(interrupted), arguments.json);
   if (arguments.what == "slam") return Print(BenchSlam(interrupted), arguments.json);
   return Print(BenchCamera(arguments.threads, interrupted), arguments.json);
@@ -38,18 +40,26 @@ int Bench(const Arguments& arguments) {
 
 #else
 
-int Bench(const Arguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
+int BenchTwin(const Arguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
 
 #endif
+
+int Bench(const Arguments& arguments) {
+  return arguments.what == "register" ? Print(BenchRegister(interrupted), arguments.json) : BenchTwin(arguments);
+}
 
 }  // namespace
 
 void AddBench(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* bench = app.add_subcommand("bench", "how long things take on this machine");
-  bench->add_option("what", arguments->what, "camera: frames and rays in corridor_26x21; physics: steps in room_7x10; slam: filter to pose")
+  bench
+      ->add_option("what", arguments->what,
+                   "camera: frames and rays in corridor_26x21; physics: steps in room_7x10; slam: filter to pose; "
+                   "register: clouds, "
+                   "beside small_gicp")
       ->required()
-      ->check(CLI::IsMember({"camera", "physics", "slam"}));
+      ->check(CLI::IsMember({"camera", "physics", "register", "slam"}));
   bench->add_option("--threads", arguments->threads, "of the cameras, measured beside one thread; default 2")
       ->check(CLI::Range(1, 256));
   bench->add_flag("--json", arguments->json, "for machines");
