@@ -7,6 +7,7 @@
 #include "slam/register/neighbours.h"
 #include "slam/register/normals.h"
 #include "slam/register/rigid_fit.h"
+#include "slam/register/tracked_neighbours.h"
 
 namespace merlin {
 namespace {
@@ -24,6 +25,15 @@ constexpr double kMaxDistanceShare = 0.05, kMaxDistanceSharePoint = 0.25;
 // Fewer points, or a smaller share of them on surfaces, show no surfaces.
 constexpr std::size_t kSurfacePointsMin = 100;
 constexpr double kSurfaceShareMin = 0.5;
+// While the kernel narrows, about so many of the source's points, evenly spread, say as much as all of them. They go on
+// until a step is so small a share of the source's mean size.
+constexpr std::size_t kCoarsePoints = 1500;
+constexpr double kCoarseStep = 1e-3;
+constexpr int kCoarseIterationsMax = 40;
+// Pairs that change to and fro let the pose circle about the solution. After so many iterations a step against the
+// former one is halved, down to the least share.
+constexpr int kDampingAfter = 50;
+constexpr double kDampingMin = 0.125;
 
 struct Pair {
   Eigen::Vector3d source, target;  // in the source frame
@@ -62,15 +72,6 @@ struct Problem {
   Surfaces source_surfaces, target_surfaces;
 };
 
-double Diagonal_m(const Cloud& cloud) {
-  Eigen::Vector3d least = cloud.positions.front(), most = least;
-  for (const Eigen::Vector3d& position : cloud.positions) {
-    least = least.cwiseMin(position);
-    most = most.cwiseMax(position);
-  }
-  return (most - least).norm();
-}
-
 // The mean size: root mean square distance from the centroid.
 double Size_m(const Cloud& cloud) {
   double squares_m2 = 0.0;
@@ -97,22 +98,25 @@ Eigen::Matrix3d Information(const Problem& p, const Eigen::Matrix3d& R_source_ta
       .inverse();
 }
 
-std::vector<Pair> FindPairs(const Problem& p, const Pose& T_target_source, AlignResult& result) {
+// Of every stride-th source point.
+std::vector<Pair> FindPairs(const Problem& p, const Pose& T_target_source, std::size_t stride,
+                            TrackedNeighbours& targets, AlignResult& result) {
   std::vector<Pair> pairs;
-  pairs.reserve(p.source.size());
+  pairs.reserve(p.source.size() / stride + 1);
   const Pose T_source_target = T_target_source.inverse();
-  double squares_m2 = 0.0;
+  const Eigen::Matrix3d R_source_target = T_source_target.linear();
+  double squares_m2 = 0.0, asked = 0.0;
   result.inliers = 0;
-  for (std::size_t i = 0; i < p.source.size(); ++i) {
-    const auto nearest = p.target_tree.Nearest(T_target_source * p.source.positions[i], result.max_distance_m);
+  for (std::size_t i = 0; i < p.source.size(); i += stride, ++asked) {
+    const auto nearest = targets.Nearest(i, T_target_source * p.source.positions[i]);
     if (!nearest) continue;
     ++result.inliers;
     squares_m2 += nearest->squared_m2;
-    const Eigen::Matrix3d information = Information(p, T_source_target.linear(), i, nearest->index);
+    const Eigen::Matrix3d information = Information(p, R_source_target, i, nearest->index);
     if (information.isZero(0.0)) continue;
     pairs.push_back({p.source.positions[i], T_source_target * p.target.positions[nearest->index], information});
   }
-  result.overlap = static_cast<double>(result.inliers) / static_cast<double>(p.source.size());
+  result.overlap = result.inliers / asked;
   result.rms_m = result.inliers > 0 ? std::sqrt(squares_m2 / result.inliers) : 0.0;
   return pairs;
 }
@@ -149,25 +153,45 @@ struct Expansion {
 // and what holds the pose in only one of the clouds holds nothing.
 enum class Curvature { kGaussNewton, kTrue };
 
+// M Hat(v) and Hat(v) M, row by row and column by column.
+Eigen::Matrix3d TimesHat(const Eigen::Matrix3d& M, const Eigen::Vector3d& v) {
+  Eigen::Matrix3d product;
+  for (int i = 0; i < 3; ++i) product.row(i) = M.row(i).cross(v.transpose());
+  return product;
+}
+Eigen::Matrix3d HatTimes(const Eigen::Vector3d& v, const Eigen::Matrix3d& M) {
+  Eigen::Matrix3d product;
+  for (int i = 0; i < 3; ++i) product.col(i) = v.cross(M.col(i));
+  return product;
+}
+
 Expansion Expand(std::span<const Pair> pairs, Curvature curvature) {
+  Eigen::Matrix3d W_sum = Eigen::Matrix3d::Zero(), W_hat = W_sum, hat_W_hat = W_sum, trace_squares = W_sum;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = force, trace_source = force;
+  for (const Pair& pair : pairs) {
+    const Eigen::Matrix3d& W = pair.information;
+    const Eigen::Vector3d& other = curvature == Curvature::kTrue ? pair.target : pair.source;
+    const Eigen::Vector3d We = W * (pair.target - pair.source);
+    W_sum += W;
+    W_hat += TimesHat(W, 0.5 * (pair.source + other));
+    hat_W_hat += HatTimes(pair.source, TimesHat(W, other));
+    force += We;
+    torque += pair.source.cross(We);
+    trace_source += W.trace() * pair.source;
+    trace_squares += W.trace() * pair.source * pair.source.transpose();
+  }
   Expansion sum;
   Matrix6d& H = sum.sums.information;
+  H.topLeftCorner<3, 3>() = W_sum;
+  H.topRightCorner<3, 3>() = -W_hat;
+  H.bottomLeftCorner<3, 3>() = -W_hat.transpose();
+  H.bottomRightCorner<3, 3>() = -0.5 * (hat_W_hat + hat_W_hat.transpose());
   Matrix6d& whole = sum.sums.whole;
-  for (const Pair& pair : pairs) {
-    const Eigen::Matrix3d hat = Hat(pair.source), &W = pair.information;
-    const Eigen::Matrix3d other = curvature == Curvature::kTrue ? Hat(pair.target) : hat;
-    const Eigen::Vector3d We = W * (pair.target - pair.source);
-    H.topLeftCorner<3, 3>() += W;
-    H.topRightCorner<3, 3>() -= 0.5 * W * (hat + other);
-    H.bottomRightCorner<3, 3>() -= 0.5 * (hat * W * other + other * W * hat);
-    whole.topLeftCorner<3, 3>().diagonal().array() += W.trace();
-    whole.topRightCorner<3, 3>() -= W.trace() * hat;
-    whole.bottomRightCorner<3, 3>() -= W.trace() * hat * hat;
-    sum.gradient.head<3>() -= We;
-    sum.gradient.tail<3>() -= hat * We;
-  }
-  H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
-  whole.bottomLeftCorner<3, 3>() = whole.topRightCorner<3, 3>().transpose();
+  whole.topLeftCorner<3, 3>() = W_sum.trace() * Eigen::Matrix3d::Identity();
+  whole.topRightCorner<3, 3>() = -Hat(trace_source);
+  whole.bottomLeftCorner<3, 3>() = Hat(trace_source);
+  whole.bottomRightCorner<3, 3>() = trace_squares.trace() * Eigen::Matrix3d::Identity() - trace_squares;
+  sum.gradient << -force, -torque;
   return sum;
 }
 
@@ -220,18 +244,37 @@ AlignResult Align(const Cloud& source, const Cloud& target, const Pose& T_target
   Pose T = shift(-problem.target_centroid) * T_target_source_guess * shift(problem.source_centroid);
 
   double kernel_least = result.max_distance_m / (std::sqrt(2.0) * problem.source.Sigma_m(0));
+  Vector6d former = Vector6d::Zero();
+  double damping = 1.0;
   bool small_step = false, narrow = true;
+  std::size_t stride = point ? 1 : std::max<std::size_t>(1, source.size() / kCoarsePoints);
+  TrackedNeighbours targets(problem.target_tree, problem.target.positions, source.size(), result.max_distance_m);
   std::vector<Pair> pairs;
   while (true) {
-    pairs = FindPairs(problem, T, result);
+    pairs = FindPairs(problem, T, stride, targets, result);
     result.T_target_source = shift(problem.target_centroid) * T * shift(-problem.source_centroid);
-    if (pairs.size() < kPairsMin || result.overlap < config.overlap_min) return result;
+    const bool few = pairs.size() < kPairsMin || result.overlap < config.overlap_min;
+    if (stride > 1 &&
+        (few || small_step || result.iterations >= std::min(config.iterations_max, kCoarseIterationsMax))) {
+      stride = 1;  // from here on with all points
+      small_step = false;
+      continue;
+    }
+    if (few) return result;
     if (!point) narrow = Soften(pairs, kernel_least);
     if (small_step || result.iterations == config.iterations_max) break;
     ++result.iterations;
-    const Vector6d step = StepOf(pairs, problem.config.method);
+    Vector6d step = StepOf(pairs, problem.config.method);
+    if (!point && narrow && result.iterations > kDampingAfter) {
+      const double turns_m2 = size_m * size_m * step.tail<3>().dot(former.tail<3>());
+      const bool back = step.head<3>().dot(former.head<3>()) + turns_m2 < 0.0;
+      damping = back ? std::max(0.5 * damping, kDampingMin) : std::min(2.0 * damping, 1.0);
+      former = step;
+      step *= damping;
+    }
     T = T * Exp(step);
-    small_step = narrow && step.head<3>().norm() + size_m * step.tail<3>().norm() <= config.step_converged * size_m;
+    const double small = std::max(config.step_converged, stride > 1 ? kCoarseStep : 0.0);
+    small_step = narrow && step.head<3>().norm() + size_m * step.tail<3>().norm() <= small * size_m;
     kernel_least *= kNarrowing;
   }
   result.end = small_step ? AlignEnd::kConverged : AlignEnd::kIterations;

@@ -1,7 +1,8 @@
 // Registration of two free clouds: ICP (Besl and McKay 1992), with three ways to measure a pair. Point: the thesis' SVD
 // step (eq. 5.18-5.37). Plane: distance from the target's surface (Chen and Medioni 1992). Gicp: between two surfaces
 // (Segal, Haehnel and Thrun 2009), each point as uncertain across its surface as its sigma says, and far more along it.
-// Plane and gicp weigh pairs by Geman and McClure's kernel, wide at first so that what lies askew still pulls.
+// Plane and gicp weigh pairs by Geman and McClure's kernel, wide at first so that what lies askew still pulls; while it
+// narrows, a part of the source's points serves.
 #pragma once
 
 #include "robot/types/config.h"

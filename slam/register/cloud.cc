@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <numbers>
 
 namespace merlin {
 namespace {
@@ -12,44 +13,89 @@ namespace {
 using Cell = std::array<double, 3>;  // whole numbers; a double holds every one that a finite coordinate can give
 
 Cell CellOf(const Eigen::Vector3d& position, double voxel_m) {
-  const Eigen::Vector3d cell = (position / voxel_m).array().floor();
+  const Eigen::Vector3d cell = (position / voxel_m).array().floor() + 0.0;  // no -0, whose bits differ from those of 0
   return {cell.x(), cell.y(), cell.z()};
 }
 
-// The points' indices, those of one cell beside each other, each cell's in their order.
-std::vector<std::uint32_t> ByCell(const std::vector<Cell>& cells) {
-  std::vector<std::uint32_t> order(cells.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return cells[a] < cells[b]; });
-  return order;
+std::uint64_t Hash(const Cell& cell) {
+  std::uint64_t hash = 0;
+  for (const double number : cell)
+    hash = std::rotl(hash, 21) ^ (std::bit_cast<std::uint64_t>(number) * 0x9e3779b97f4a7c15u);
+  return (hash * 0xbf58476d1ce4e5b9u) >> 20;
 }
+
+// Numbers cells 0, 1, 2, ... in the order in which they first come: a hash table with linear probing.
+class CellNumbers {
+ public:
+  explicit CellNumbers(std::size_t cells_max) : slots_(std::bit_ceil(2 * cells_max + 1), kEmpty) {}
+
+  std::uint32_t operator()(const Cell& cell) {
+    const std::size_t last = slots_.size() - 1;
+    for (std::size_t at = Hash(cell) & last;; at = (at + 1) & last) {
+      if (slots_[at] == kEmpty) {
+        slots_[at] = static_cast<std::uint32_t>(cells_.size());
+        cells_.push_back(cell);
+        return slots_[at];
+      }
+      if (cells_[slots_[at]] == cell) return slots_[at];
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kEmpty = 0xffffffffu;
+  std::vector<std::uint32_t> slots_;
+  std::vector<Cell> cells_;
+};
+
+// Sums of differences from the cell's first point: no digits lost far from the origin.
+struct Sum {
+  Eigen::Vector3d first, differences = Eigen::Vector3d::Zero();
+  double sigma_m = 0.0;
+  double count = 0.0;
+};
+
+// More points than these make registration slower, and hardly nearer.
+constexpr std::size_t kThinPointsMax = 20'000;
+constexpr double kVoxelShareMin = 1e-3;
 
 }  // namespace
 
 Cloud Thin(const Cloud& cloud, double voxel_m) {
-  std::vector<Cell> cells(cloud.size());
-  std::ranges::transform(cloud.positions, cells.begin(), [&](const auto& p) { return CellOf(p, voxel_m); });
-  const std::vector<std::uint32_t> order = ByCell(cells);
-  std::vector<std::array<std::uint32_t, 3>> groups;  // first point, begin and end in the order
-  for (std::uint32_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    while (end < order.size() && cells[order[end]] == cells[order[begin]]) ++end;
-    groups.push_back({order[begin], begin, end});
+  CellNumbers numbers(cloud.size());
+  std::vector<Sum> sums;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const std::uint32_t cell = numbers(CellOf(cloud.positions[i], voxel_m));
+    if (cell == sums.size()) sums.push_back({.first = cloud.positions[i]});
+    Sum& sum = sums[cell];
+    sum.differences += cloud.positions[i] - sum.first;
+    sum.sigma_m += cloud.Sigma_m(i);
+    ++sum.count;
   }
-  std::ranges::sort(groups);
-
   Cloud thin;
-  for (const auto& [first, begin, end] : groups) {
-    // Sums of differences from the first point: no digits lost far from the origin.
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    double sigma_sum_m = 0.0;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      sum += cloud.positions[order[i]] - cloud.positions[first];
-      sigma_sum_m += cloud.Sigma_m(order[i]);
-    }
-    thin.positions.push_back(cloud.positions[first] + sum / (end - begin));
-    if (!cloud.sigma_m.empty()) thin.sigma_m.push_back(sigma_sum_m / (end - begin));
+  for (const Sum& sum : sums) {
+    thin.positions.push_back(sum.first + sum.differences / sum.count);
+    if (!cloud.sigma_m.empty()) thin.sigma_m.push_back(sum.sigma_m / sum.count);
   }
   return thin;
+}
+
+double Diagonal_m(const Cloud& cloud) {
+  if (cloud.size() == 0) return 0.0;
+  Eigen::Vector3d least = cloud.positions.front(), most = least;
+  for (const Eigen::Vector3d& position : cloud.positions) {
+    least = least.cwiseMin(position);
+    most = most.cwiseMax(position);
+  }
+  return (most - least).norm();
+}
+
+ThinPair ThinToFit(const Cloud& source, const Cloud& target) {
+  ThinPair pair{source, target, 0.0};
+  const auto many = [&] { return std::max(pair.source.size(), pair.target.size()) > kThinPointsMax; };
+  double voxel_m = kVoxelShareMin * std::max(Diagonal_m(source), Diagonal_m(target));
+  for (; many() && voxel_m > 0.0; voxel_m *= std::numbers::sqrt2)
+    pair = {Thin(source, voxel_m), Thin(target, voxel_m), voxel_m};
+  return pair;
 }
 
 Eigen::Vector3d Centroid(const Cloud& cloud) {

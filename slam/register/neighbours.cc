@@ -24,23 +24,28 @@ class Least {
   Least(std::span<Neighbour> best, double limit_m2) : best_(best), limit_m2_(limit_m2) {}
 
   bool addPoint(double squared_m2, std::uint32_t index) {
+    if (squared_m2 > limit_m2_) return true;
     const Neighbour candidate{squared_m2, index};
-    if (squared_m2 > limit_m2_ || (full() && candidate > best_.back())) return true;
+    if (full() && !IsLess(candidate, best_.back())) return true;
     std::size_t i = full() ? count_ - 1 : count_++;
-    for (; i > 0 && candidate < best_[i - 1]; --i) best_[i] = best_[i - 1];
+    for (; i > 0 && IsLess(candidate, best_[i - 1]); --i) best_[i] = best_[i - 1];
     best_[i] = candidate;
+    if (full()) limit_m2_ = best_.back().squared_m2;
     return true;
   }
   // A little more than it is: equals must come to addPoint, and the tree's bounds are rounded.
-  double worstDist() const { return (full() ? best_.back().squared_m2 : limit_m2_) * (1.0 + 1e-9) + kTiny_m2; }
+  double worstDist() const { return limit_m2_ * (1.0 + 1e-9) + kTiny_m2; }
   bool full() const { return count_ == best_.size(); }
   std::size_t size() const { return count_; }
   void sort() const {}  // nanoflann 1.6 asks for it; they are in order already
 
  private:
   static constexpr double kTiny_m2 = std::numeric_limits<double>::min();
+  static bool IsLess(const Neighbour& a, const Neighbour& b) {
+    return a.squared_m2 < b.squared_m2 || (a.squared_m2 == b.squared_m2 && a.index < b.index);
+  }
   std::span<Neighbour> best_;
-  double limit_m2_;
+  double limit_m2_;  // of those that still come into question
   std::size_t count_ = 0;
 };
 
@@ -49,7 +54,7 @@ class Least {
 struct Neighbours::Tree {
   using Index =
       nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Positions>, Positions, 3, std::uint32_t>;
-  explicit Tree(std::span<const Eigen::Vector3d> positions) : points{positions}, index(3, points, {16}) {}
+  explicit Tree(std::span<const Eigen::Vector3d> positions) : points{positions}, index(3, points, {24}) {}
   std::size_t Find(const Eigen::Vector3d& query, std::span<Neighbour> found, double limit_m2) const {
     Least least(found, limit_m2);
     if (!found.empty()) index.findNeighbors(least, query.data(), {});
@@ -68,8 +73,8 @@ std::optional<Neighbour> Neighbours::Nearest(const Eigen::Vector3d& query, doubl
   return nearest;
 }
 
-std::size_t Neighbours::Nearest(const Eigen::Vector3d& query, std::span<Neighbour> found) const {
-  return query.allFinite() ? tree_->Find(query, found, std::numeric_limits<double>::max() / 4.0) : 0;
+std::size_t Neighbours::Nearest(const Eigen::Vector3d& query, std::span<Neighbour> found, double reach_m) const {
+  return query.allFinite() ? tree_->Find(query, found, reach_m * reach_m) : 0;
 }
 
 }  // namespace merlin

@@ -19,6 +19,7 @@ struct Neighbour {
 
 class Neighbours {
  public:
+  static constexpr double kAnywhere_m = 1e150;  // its square is still finite
   // Keeps a reference: the positions must outlive it, and be finite.
   explicit Neighbours(std::span<const Eigen::Vector3d> positions);
   ~Neighbours();
@@ -27,8 +28,8 @@ class Neighbours {
 
   // None farther than reach_m.
   std::optional<Neighbour> Nearest(const Eigen::Vector3d& query, double reach_m) const;
-  // The nearest ones, as many as fit into `found`, near to far; how many there are.
-  std::size_t Nearest(const Eigen::Vector3d& query, std::span<Neighbour> found) const;
+  // The nearest ones, as many as fit into `found`, near to far; how many there are. None farther than reach_m.
+  std::size_t Nearest(const Eigen::Vector3d& query, std::span<Neighbour> found, double reach_m = kAnywhere_m) const;
 
  private:
   struct Tree;

@@ -1,6 +1,7 @@
 #include "slam/register/normals.h"
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 
 namespace merlin {
 namespace {
@@ -27,9 +28,17 @@ Surfaces FindSurfaces(const Cloud& cloud, const Neighbours& neighbours, int coun
   surfaces.normals.reserve(cloud.size());
   std::vector<Neighbour> found(static_cast<std::size_t>(count));
   std::size_t flat = 0;
+  double reach_m = Neighbours::kAnywhere_m;
+  Eigen::Vector3d former = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& position : cloud.positions) {
-    const std::size_t n = neighbours.Nearest(position, found);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(Spread(cloud, position, std::span(found).first(n)));
+    // Files come in the order of a scan: the former point's neighbours are not far, and bound how far the search must
+    // go.
+    if (reach_m < Neighbours::kAnywhere_m) reach_m = (reach_m + (position - former).norm()) * (1.0 + 1e-9);
+    const std::size_t n = neighbours.Nearest(position, found, reach_m);
+    if (n == found.size()) reach_m = std::sqrt(found.back().squared_m2);
+    former = position;
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    solver.computeDirect(Spread(cloud, position, std::span(found).first(n)));  // in closed form: a tenth of the time
     const Eigen::Vector3d v = solver.eigenvalues();
     const bool line = !(v(2) > 0.0 && v(1) > kLineShare * v(2));
     surfaces.normals.push_back(line ? Eigen::Vector3d(0.0, 0.0, 0.0) : Eigen::Vector3d(solver.eigenvectors().col(0)));

@@ -247,6 +247,30 @@ TEST(Align, GivesTheSameBitsTwice) {
   }
 }
 
+// More points than serve while the kernel narrows: the last steps are with all of them.
+TEST(Align, TakesEveryPointOfALargeCloudAtTheEnd) {
+  Cloud source, target;
+  for (std::uint32_t seed = 1; seed <= 8; ++seed)
+    for (auto [cloud, shift] : {std::pair(&source, 0u), std::pair(&target, 100u)})
+      for (const auto& position : Corner(0.004, seed + shift).positions) cloud->positions.push_back(position);
+  const Pose T = Motion(0.08, 0.04);
+  for (const Pose& guess : {T, Pose(Pose::Identity()), T * Motion(0.05, -0.05)}) {
+    const AlignResult result = Align(source, Moved(target, T), guess, {});
+    EXPECT_TRUE(result.converged());
+    EXPECT_GT(result.inliers, 23'000);
+    EXPECT_LT((T.inverse() * result.T_target_source).translation().norm(), 0.001);
+  }
+  const AlignResult same = Align(source, source, Pose::Identity(), {});
+  EXPECT_TRUE(same.converged());
+  EXPECT_LT(Difference(same.T_target_source, Pose::Identity()), 1e-9);
+  Cloud floor;
+  for (std::uint32_t seed = 1; seed <= 4; ++seed)
+    for (const auto& position : Corner(0.003, seed, 1).positions) floor.positions.push_back(position);
+  EXPECT_EQ(Align(floor, floor, Motion(0.01, 0.001), {}).undetermined.count(), 3);
+  EXPECT_EQ(Align(source, Moved(target, FromXyYaw(50, 0, 0)), Pose::Identity(), {}).end, AlignEnd::kTooFewPairs);
+  EXPECT_EQ(Align(source, Moved(target, T), Pose::Identity(), {.iterations_max = 2}).end, AlignEnd::kIterations);
+}
+
 TEST(AlignConfig, NamesItsFaults) {
   EXPECT_TRUE(Validate(AlignConfig{}).empty());
   EXPECT_EQ(Validate(AlignConfig{.max_distance_m = std::nan(""), .iterations_max = 0, .neighbours = 2}).size(), 3u);
@@ -261,6 +285,21 @@ TEST(Thin, KeepsOneMeanPointACubeInOrderOfAppearance) {
   EXPECT_NEAR(thin.positions[1].x(), 0.02, 1e-15);
   EXPECT_NEAR(thin.positions[2].x(), -0.01, 1e-15);
   EXPECT_NEAR(thin.sigma_m[1], 4.0, 1e-15);
+}
+
+TEST(ThinToFit, LeavesAtMostTwentyThousandPointsAndSmallCloudsAsTheyAre) {
+  const Cloud none, small = Corner(0.005, 1);
+  EXPECT_EQ(ThinToFit(none, small).voxel_m, 0.0);
+  EXPECT_EQ(ThinToFit(none, small).target.positions, small.positions);
+  const Cloud large = Scattered(50'000);
+  const ThinPair thin = ThinToFit(small, large);
+  EXPECT_LE(thin.target.size(), 20'000u);
+  EXPECT_GT(thin.target.size(), 5'000u);
+  EXPECT_EQ(thin.source.positions, Thin(small, thin.voxel_m).positions);
+  EXPECT_EQ(thin.target.positions, Thin(large, thin.voxel_m).positions);
+  const Cloud same{std::vector<Eigen::Vector3d>(30'000, {1, 2, 3}), {}};
+  EXPECT_EQ(ThinToFit(same, small).source.size(), 1u);
+  EXPECT_EQ(ThinToFit(same, same).voxel_m, 0.0);  // there is no length to choose by
 }
 
 TEST(Surfaces, HaveTheirPlanesNormalsAndKnowCurves) {

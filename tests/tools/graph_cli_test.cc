@@ -12,6 +12,7 @@
 #include <string>
 
 #include "scenarios/judge/writers.h"
+#include "tests/oracles.h"
 #include "tests/scenarios/judge/temporary_folder.h"
 #include "tests/shared_data.h"
 #include "tests/tools/command.h"
@@ -174,10 +175,12 @@ TEST(EvalCli, AgreesWithEvoOnARealTrajectory) {
   EXPECT_NEAR(figures["rpe_rotation_rmse_deg"], 0.818638863, 1e-6);
 }
 
-// What an evo program prints. $MERLIN_EVO: the folder of its programs, where they are not in the path.
-std::string Evo(const std::string& command, const std::filesystem::path& folder) {
-  const char* const programs = std::getenv("MERLIN_EVO");
-  return Run((programs ? std::string(programs) + "/" : std::string()) + command + " 2>&1", folder).said;
+// What an evo program prints; with its settings in the folder, not in the user's home.
+std::string Evo(const std::string& program, const std::string& arguments, const std::filesystem::path& folder) {
+  const std::string command = "HOME=\"$PWD\" '" + OracleProgram(program).string() + "' ";
+  const Outcome outcome = Run(command + arguments + " 2>&1", folder);
+  EXPECT_EQ(outcome.code, 0) << command << arguments << "\n" << outcome.said << "\ntools/merlin test installs evo";
+  return outcome.said;
 }
 
 // Of a line "   rmse\t0.013473".
@@ -209,17 +212,14 @@ TEST(EvalCli, AgreesWithEvoOnARandomWalk) {
   WriteFile(folder.path() / "truth.tum", ToTum(truth));
   WriteFile(folder.path() / "estimate.tum", ToTum(estimate));
   const std::string files = " truth.tum estimate.tum ";
-  if (std::isnan(Figure(Evo("evo_ape tum" + files, folder.path()), "rmse")))
-    GTEST_SKIP() << "evo is absent (evo_ape in the path, or $MERLIN_EVO)";
-
-  const std::string relative = "evo_rpe tum" + files + "--delta 1 --delta_unit m --all_pairs --pairs_from_reference ";
+  const std::string relative = "tum" + files + "--delta 1 --delta_unit m --all_pairs --pairs_from_reference ";
   const std::pair<const char*, const char*> kWays[] = {{"none", ""}, {"se3", "-a"}, {"sim3", "-as"}};
   for (const auto& [align, option] : kWays) {
     const nlohmann::json figures = Json("eval" + files + "--align " + align, folder.path());
     EXPECT_EQ(figures["pairs"], 400);
-    const std::string ape = Evo("evo_ape tum" + files + option, folder.path());
-    const std::string translation = Evo(relative + option, folder.path());
-    const std::string rotation = Evo(relative + option + " --pose_relation angle_deg", folder.path());
+    const std::string ape = Evo("evo_ape", "tum" + files + option, folder.path());
+    const std::string translation = Evo("evo_rpe", relative + option, folder.path());
+    const std::string rotation = Evo("evo_rpe", relative + option + " --pose_relation angle_deg", folder.path());
     for (const std::string name : {"rmse", "mean", "median", "std", "min", "max"}) {
       EXPECT_NEAR(figures["ate_" + name + "_m"], Figure(ape, name), 2e-6) << align << " " << name;
       EXPECT_NEAR(figures["rpe_translation_" + name + "_m"], Figure(translation, name), 2e-6) << align << " " << name;

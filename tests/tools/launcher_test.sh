@@ -12,7 +12,7 @@ cp -r "$source_dir/tools/merlin" "$source_dir/tools/setup" "$top/tools"
 cp "$source_dir/tools/cli/help.txt" "$top/tools/cli"
 cp "$source_dir/CMakePresets.json" "$top"
 export PATH="$world/bin:$PATH" MERLIN_OS_RELEASE="$world/os-release"
-unset MUJOCO_ROOT
+unset MUJOCO_ROOT MERLIN_ORACLES
 echo 'ID=debian' >"$MERLIN_OS_RELEASE"
 cd "$world/elsewhere"
 
@@ -216,6 +216,47 @@ case_SourcesThatDoNotBuildGiveFour() {
 printf "[1/2] Building a\n[2/2] Building b\nFAILED: b.o\n/usr/bin/c++ a long line\nb.cc:3: error: no\nninja: build stopped\n"; exit 1'
   merlin 4 doctor && says "b.cc:3: error: no"
   ! grep -q "a long line" "$world/err" || fail "the command line was shown"
+}
+
+# A MuJoCo that is there, so that set-up comes to the oracles.
+mujoco_there() {
+  export MUJOCO_ROOT="$world/own"
+  mkdir -p "$MUJOCO_ROOT/include/mujoco" && touch "$MUJOCO_ROOT/include/mujoco/mujoco.h" "$MUJOCO_ROOT/libmujoco.so.4.0.0"
+}
+real_python=$(command -v python3)
+# python3 -m venv with these lines for its pip; all else by the real one.
+venv_whose_pip() { # lines
+  stand_in venv_python "$1"
+  stand_in python3 "[ \"\$1 \$2\" = '-m venv' ] || exec '$real_python' \"\$@\"
+mkdir -p \"\$3/bin\" && cp '$world/bin/venv_python' \"\$3/bin/python\""
+}
+
+case_OraclesWithoutNetworkStopWithThree() {
+  all_packages_there
+  builds_nothing
+  mujoco_there
+  venv_whose_pip 'echo "ERROR: No matching distribution found for evo" >&2; exit 1'
+  merlin 3 bench register && says "set-up stopped at the tests' oracles" && says "No matching distribution"
+  one_sentence 2
+  [ ! -e "$top/.deps/oracles" ] || fail "half an environment was left"
+  merlin 7 bench slam
+  MERLIN_ORACLES="$world/own" merlin 7 bench register
+}
+
+case_InterruptedOraclesLeaveNothingAndAreMadeOnce() {
+  all_packages_there
+  builds_nothing
+  mujoco_there
+  venv_whose_pip 'kill -INT $PPID; sleep 0.2'
+  merlin 130 bench register
+  [ ! -e "$top/.deps/oracles" ] || fail "half an environment was left"
+  venv_whose_pip 'echo "$*" >"$(dirname "$0")/got"'
+  merlin 7 bench register --json && says "program got: bench register --json"
+  grep -q -- "--require-hashes .*oracles.txt" "$top/.deps/oracles/bin/got" || fail "the packages' hashes are not checked"
+  venv_whose_pip 'exit 1'
+  merlin 7 bench register
+  echo "# another list" >>"$top/tools/setup/oracles.txt"
+  merlin 3 bench register
 }
 
 "case_$case"

@@ -59,6 +59,13 @@ TEST(RegisterCli, PrintsThePoseForMachines) {
   }
 }
 
+TEST(BenchRegister, SaysWithExitThreeThatSmallGicpIsAbsent) {
+  const TemporaryFolder folder;
+  const Outcome outcome = merlin::Run("MERLIN_ORACLES=none '" MERLIN_BINARY "' bench register 2>&1", folder.path());
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_NE(outcome.said.find("no small_gicp in none"), std::string::npos) << outcome.said;
+}
+
 TEST(RegisterCli, WritesTheAlignedSourceWhole) {
   const TemporaryFolder folder;
   WriteCorner(folder.path() / "s.csv", Pose::Identity());

@@ -1,4 +1,6 @@
 // `merlin bench`: how long things take on this machine, beside what they may take.
+#include "tools/register/bench.h"
+
 #include <fmt/format.h>
 
 #include <memory>
@@ -21,8 +23,6 @@ struct BenchArguments {
   bool json = false;
 };
 
-#if MERLIN_TWIN
-
 template <class Result>
 int Print(const Result& bench, bool json) {
   if (interrupted) return kInterrupted;
@@ -30,7 +30,9 @@ int Print(const Result& bench, bool json) {
   return kPass;
 }
 
-int Bench(const BenchArguments& arguments) {
+#if MERLIN_TWIN
+
+int BenchTwin(const BenchArguments& arguments) {
   if (arguments.what == "physics") return Print(BenchPhysics(interrupted), arguments.json);
   if (arguments.what == "slam") return Print(BenchSlam(interrupted), arguments.json);
   return Print(BenchCamera(arguments.threads, interrupted), arguments.json);
@@ -38,9 +40,13 @@ int Bench(const BenchArguments& arguments) {
 
 #else
 
-int Bench(const BenchArguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
+int BenchTwin(const BenchArguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
 
 #endif
+
+int Bench(const BenchArguments& arguments) {
+  return arguments.what == "register" ? Print(BenchRegister(interrupted), arguments.json) : BenchTwin(arguments);
+}
 
 }  // namespace
 
@@ -50,9 +56,9 @@ void AddBench(CLI::App& app, int& exit_code) {
   bench
       ->add_option("what", arguments->what,
                    "camera: frames and rays in corridor_26x21; physics: steps in room_7x10; slam: filter to pose, and a lap "
-                   "that closes a loop")
+                   "that closes a loop; register: clouds, beside small_gicp")
       ->required()
-      ->check(CLI::IsMember({"camera", "physics", "slam"}));
+      ->check(CLI::IsMember({"camera", "physics", "register", "slam"}));
   bench->add_option("--threads", arguments->threads, "of the cameras, measured beside one thread; default 2")
       ->check(CLI::Range(1, 256));
   bench->add_flag("--json", arguments->json, "for machines");

@@ -34,7 +34,7 @@ struct RegisterArguments {
 
 struct Clouds {
   CloudFile source, target;
-  Cloud thin_source, thin_target;  // as registered
+  ThinPair thin;  // as registered
 };
 
 [[noreturn]] void RefuseGuess(const std::string& text, const std::string& why) {
@@ -126,9 +126,10 @@ std::string Json(const AlignResult& r, const Clouds& clouds, double time_ms) {
                       {"time_ms", time_ms},
                       {"method", kMethodNames[static_cast<int>(r.method)]},
                       {"max_distance_m", r.max_distance_m},
+                      {"voxel_m", clouds.thin.voxel_m},
                       {"covariance", Rows(r.covariance)},
                       {"undetermined", open},
-                      {"points", {clouds.thin_source.size(), clouds.thin_target.size()}},
+                      {"points", {clouds.thin.source.size(), clouds.thin.target.size()}},
                       {"left_out", {clouds.source.left_out, clouds.target.left_out}},
                       {"warnings", Warnings(clouds)}}
              .dump(-1, ' ', false, ordered_json::error_handler_t::replace) +
@@ -142,7 +143,7 @@ std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
     text += "\n";
   }
   text += fmt::format("{}\n{} of {} source points have a target point within {:.4g} m (overlap {:.3f}), rms {:.4g} m\n",
-                      Words(r), r.inliers, clouds.thin_source.size(), r.max_distance_m, r.overlap, r.rms_m);
+                      Words(r), r.inliers, clouds.thin.source.size(), r.max_distance_m, r.overlap, r.rms_m);
   for (const auto& d : r.undetermined.directions.colwise())
     text += fmt::format("not held: move {:.3f} {:.3f} {:.3f}, turn {:.3f} {:.3f} {:.3f}\n", d(0), d(1), d(2), d(3),
                         d(4), d(5));
@@ -150,9 +151,11 @@ std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
     text +=
         fmt::format("left out: {} and {} points whose coordinates are empty, not finite or beyond 1e9 m\n",
                     clouds.source.left_out, clouds.target.left_out);
-  return text + fmt::format("{}: {} onto {} points, {} iterations, {:.1f} ms\n",
-                            kMethodNames[static_cast<int>(r.method)], clouds.thin_source.size(),
-                            clouds.thin_target.size(), r.iterations, time_ms);
+  const std::string thinned =
+      clouds.thin.voxel_m > 0.0 ? fmt::format(" (voxels of {:.3g} m)", clouds.thin.voxel_m) : "";
+  return text + fmt::format("{}: {} onto {} points{}, {} iterations, {:.1f} ms\n",
+                            kMethodNames[static_cast<int>(r.method)], clouds.thin.source.size(),
+                            clouds.thin.target.size(), thinned, r.iterations, time_ms);
 }
 
 // The whole source, in the target's frame.
@@ -173,13 +176,14 @@ int Register(const RegisterArguments& a) {
   CheckLength("--voxel", a.voxel_m);
   const Pose guess = ReadGuess(a.guess);
   if (!a.out.empty()) CheckOutputFile(a.out);
-  Clouds clouds{ReadPoints(a.source), ReadPoints(a.target), {}, {}};
-  clouds.thin_source = a.voxel_m ? Thin(clouds.source.cloud, *a.voxel_m) : clouds.source.cloud;
-  clouds.thin_target = a.voxel_m ? Thin(clouds.target.cloud, *a.voxel_m) : clouds.target.cloud;
+  Clouds clouds{ReadPoints(a.source), ReadPoints(a.target), {}};
+  clouds.thin = a.voxel_m
+                    ? ThinPair{Thin(clouds.source.cloud, *a.voxel_m), Thin(clouds.target.cloud, *a.voxel_m), *a.voxel_m}
+                    : ThinToFit(clouds.source.cloud, clouds.target.cloud);
   if (interrupted) return kInterrupted;
   const AlignConfig config = ConfigOf(a);
   const auto begin = std::chrono::steady_clock::now();
-  const AlignResult result = Align(clouds.thin_source, clouds.thin_target, guess, config);
+  const AlignResult result = Align(clouds.thin.source, clouds.thin.target, guess, config);
   const double time_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   if (interrupted) return kInterrupted;
   if (!a.out.empty()) WriteAligned(a.out, clouds.source, result.T_target_source);
@@ -205,7 +209,8 @@ void AddRegister(CLI::App& app, int& exit_code) {
                   "M: points farther apart are no pair; default 1/20 of the target's diagonal, 1/4 with point");
   reg->add_option("--guess", a->guess,
                   "T_target_source: x,y,z,roll,pitch,yaw (m, rad), or 16 numbers row by row; default none");
-  reg->add_option("--voxel", a->voxel_m, "M: first thins both to one point a cube of this edge");
+  reg->add_option("--voxel", a->voxel_m,
+                  "M: thins both to one point a cube of this edge; default: what leaves at most 20,000 points of each");
   reg->add_option("--out", a->out,
                   "PLY (PCD, CSV by its name): the source in the target's frame, also where it did not converge")
       ->check(NotEmpty);
