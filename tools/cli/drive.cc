@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <exception>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -92,7 +93,7 @@ class StatusLine {
     std::fflush(stderr);
   }
   ~StatusLine() {
-    if (terminal_) fmt::print(stderr, "\n");
+    if (terminal_) std::fputs("\n", stderr);  // a terminal may be gone
   }
 
  private:
@@ -142,6 +143,8 @@ int Drive(const Arguments& arguments) {
   fmt::print("drove {:.2f} m in {:.1f} s, {} collisions\nfiles: {} (look at map.png)\n",
              result.metrics.distance_m.value_or(0.0), result.metrics.sim_time_s.value_or(0.0),
              result.metrics.collisions.value_or(0), options.out.string());
+  std::fflush(stdout);  // what was told so far comes before the error
+  if (report.error) std::rethrow_exception(report.error);
   return result.verdict == Verdict::kPass ? kPass : result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
 }
 

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -83,7 +84,7 @@ class Progress {
     std::fflush(stderr);
   }
   ~Progress() {
-    if (terminal_) fmt::print(stderr, "\r\033[K");
+    if (terminal_) std::fputs("\r\033[K", stderr);  // a terminal may be gone
   }
 
  private:
@@ -150,6 +151,8 @@ int Run(const Arguments& arguments) {
   }
   if (arguments.json) fmt::print("{}", ToJson(report.result));
   else PrintSummary(report, options.out);
+  std::fflush(stdout);  // what was told so far comes before the error
+  if (report.error) std::rethrow_exception(report.error);
   return report.result.verdict == Verdict::kPass ? kPass : report.result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
 }
 
