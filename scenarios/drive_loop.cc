@@ -2,7 +2,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <exception>
+#include <string>
 #include <utility>
+
+#include "robot/types/error.h"
 
 namespace merlin {
 namespace {
@@ -22,6 +26,25 @@ Rig RigOf(const Robot& robot, const CarDescription& car) {
   return rig;
 }
 
+// Uses a device. What its driver throws becomes a DeviceError that names the device.
+template <class Use>
+auto Ask(const std::string& device, const Use& use) {
+  try {
+    return use();
+  } catch (const std::exception& error) {
+    throw DeviceError(device + ": " + error.what());
+  } catch (...) {
+    throw DeviceError(device + ": its driver threw an unknown exception");
+  }
+}
+
+// Of a device that may be absent.
+template <class Device>
+auto Poll(const std::string& name, Device* device) -> decltype(device->Poll()) {
+  if (device == nullptr) return std::nullopt;
+  return Ask(name, [device] { return device->Poll(); });
+}
+
 }  // namespace
 
 DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception,
@@ -37,7 +60,7 @@ DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const Percep
       metres_per_count_(car.MetresPerCount()) {}
 
 void DriveLoop::Listen(const LoopObserver& observer) {
-  while (auto state = robot_.drive->Poll()) {
+  while (auto state = Poll("drive", robot_.drive)) {
     last_drive_ = robot_.clock->Now();
     pipeline_.Add(*state);
     energy_.Update(*state);
@@ -46,31 +69,17 @@ void DriveLoop::Listen(const LoopObserver& observer) {
       status_.speed_m_s = counts * metres_per_count_ / Seconds(state->stamp - status_.state.stamp);
     status_.state = *state;
   }
-  while (robot_.pan != nullptr) {
-    const auto state = robot_.pan->Poll();
-    if (!state) break;
-    pipeline_.AddPan(*state);
-  }
-  while (robot_.stand != nullptr) {
-    const auto state = robot_.stand->Poll();
-    if (!state) break;
-    pipeline_.AddStand(*state);
-  }
-  while (robot_.compass != nullptr) {
-    const auto reading = robot_.compass->Poll();
-    if (!reading) break;
-    pipeline_.Add(*reading);
-  }
-  while (robot_.color != nullptr) {
-    auto frame = robot_.color->Poll();
-    if (!frame) break;
+  while (const auto state = Poll("pan unit", robot_.pan)) pipeline_.AddPan(*state);
+  while (const auto state = Poll("stand", robot_.stand)) pipeline_.AddStand(*state);
+  while (const auto reading = Poll("compass", robot_.compass)) pipeline_.Add(*reading);
+  while (auto frame = Poll("colour camera", robot_.color)) {
     if (observer.color) observer.color(*frame);
     pipeline_.Add(std::move(*frame));
   }
 }
 
 std::optional<Decision> DriveLoop::Decide(const LoopObserver& observer, bool forget) {
-  while (auto frame = robot_.depth->Poll()) {
+  while (auto frame = Poll("depth camera", robot_.depth)) {
     last_depth_ = robot_.clock->Now();
     if (observer.depth) observer.depth(*frame);
     const auto begin = std::chrono::steady_clock::now();
@@ -92,8 +101,8 @@ bool DriveLoop::Tick(const LoopObserver& observer) {
   Listen(observer);
   bool done = false;
   while (const auto decision = Decide(observer, false)) {
-    robot_.drive->Send(decision->command);
-    if (robot_.stand != nullptr && decision->stand_rad) robot_.stand->Send(*decision->stand_rad);
+    Send(decision->command);
+    if (robot_.stand != nullptr && decision->stand_rad) Ask("stand", [&] { robot_.stand->Send(*decision->stand_rad); });
     done = decision->done;
     if (observer.tick) observer.tick(robot_.clock->Now(), *decision);
   }
@@ -117,7 +126,7 @@ bool DriveLoop::TickByHand(const LoopObserver& observer, const Hand& hand) {
   status_.energy = energy_.level();
   status_.arbitration = arbiter_.Decide(now, status_.wish, Advice(now), seen_ ? &*seen_ : nullptr);
   status_.doing = status_.arbitration.driver == Driver::kAutonomy ? advice_->doing : "";
-  robot_.drive->Send(status_.arbitration.command);
+  Send(status_.arbitration.command);
   if (observer.hand) observer.hand(now, status_);
   return status_.wish.quit;
 }
@@ -125,34 +134,51 @@ bool DriveLoop::TickByHand(const LoopObserver& observer, const Hand& hand) {
 void DriveLoop::AdaptExposure(const DepthFrame& frame) {
   const DepthCameraInfo& info = robot_.depth->Info();
   const DepthSettings adapted = Adapt(frame, info.sheet, info.rate_hz, integration_);
-  if (adapted.integration_s != frame.settings.integration_s) robot_.depth->Configure(adapted);
+  if (adapted.integration_s != frame.settings.integration_s)
+    Ask("depth camera", [&] { robot_.depth->Configure(adapted); });
 }
 
-void DriveLoop::Stand() {
+void DriveLoop::Send(const DriveCommand& command) {
+  Ask("drive", [&] { robot_.drive->Send(command); });
+}
+
+// Devices that throw now do not keep the others from being used.
+void DriveLoop::Stand(FirstFault& faults) {
   const Time begin = robot_.clock->Now();
   std::optional<DriveState> before;
   while (robot_.clock->Now() - begin < kStandLimit) {
-    robot_.drive->Send({.speed_m_s = 0.0, .steering_rad = 0.0, .valid_for = kSilent});
-    if (!robot_.clock->WaitUntil(robot_.clock->Now() + period_)) return;
+    faults.Try([&] { Send({.speed_m_s = 0.0, .steering_rad = 0.0, .valid_for = kSilent}); });
+    bool goes_on = false;
+    faults.Try([&] { goes_on = robot_.clock->WaitUntil(robot_.clock->Now() + period_); });
+    if (!goes_on) return;
     std::optional<DriveState> state;
-    while (auto next = robot_.drive->Poll()) state = next;
+    faults.Try([&] {
+      while (auto next = Poll("drive", robot_.drive)) state = next;
+    });
     if (state && before && state->encoder_counts == before->encoder_counts) return;
     if (state) before = state;
   }
 }
 
-LoopEnd DriveLoop::Run(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand) {
-  LoopEnd end = LoopEnd::kTimeUp;
+LoopEnd DriveLoop::Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand) {
   last_depth_ = last_drive_ = robot_.clock->Now();
   for (Time tick = robot_.clock->Now() + period_; robot_.clock->WaitUntil(tick); tick += period_) {
-    if (hand ? TickByHand(observer, hand) : Tick(observer)) end = hand ? LoopEnd::kQuit : LoopEnd::kTaskDone;
-    else if (stop.load()) end = LoopEnd::kInterrupted;
-    else if (!hand && energy_.level() == EnergyLevel::kEmpty) end = LoopEnd::kBatteryEmpty;
-    else if (robot_.clock->Now() - std::min(last_depth_, last_drive_) > kSilent + period_) end = LoopEnd::kDeviceLost;
-    else continue;
-    Stand();
-    return end;
+    const bool done = hand ? TickByHand(observer, hand) : Tick(observer);
+    if (observer.car_lost && observer.car_lost()) return LoopEnd::kCarLost;
+    if (done) return hand ? LoopEnd::kQuit : LoopEnd::kTaskDone;
+    if (stop.load()) return LoopEnd::kInterrupted;
+    if (!hand && energy_.level() == EnergyLevel::kEmpty) return LoopEnd::kBatteryEmpty;
+    if (robot_.clock->Now() - std::min(last_depth_, last_drive_) > kSilent + period_) return LoopEnd::kDeviceLost;
   }
+  return LoopEnd::kTimeUp;
+}
+
+LoopEnd DriveLoop::Run(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand) {
+  FirstFault faults;
+  LoopEnd end = LoopEnd::kTimeUp;
+  faults.Try([&] { end = Drive(stop, observer, hand); });
+  Stand(faults);
+  if (faults.get()) std::rethrow_exception(faults.get());
   return end;
 }
 

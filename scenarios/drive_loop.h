@@ -11,11 +11,12 @@
 #include "autonomy/pilot.h"
 #include "perception/pipeline.h"
 #include "robot/hal/hal.h"
+#include "scenarios/first_fault.h"
 #include "slam/slam.h"
 
 namespace merlin {
 
-enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost, kBatteryEmpty, kQuit };
+enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost, kBatteryEmpty, kQuit, kCarLost };
 
 // An operator's hand, asked at every tick.
 using Hand = std::function<ManualWish(Time now)>;
@@ -36,6 +37,7 @@ struct LoopObserver {
   std::function<void(const ColorFrame&)> color;
   std::function<void(Time now, const Decision&)> tick;  // after every decision
   std::function<void(Time now, const HandStatus&)> hand{};  // at every tick that has a hand
+  std::function<bool()> car_lost{};  // asked at every tick: true ends the run (the truth knows, see car_watch.h)
 };
 
 class DriveLoop {
@@ -43,14 +45,17 @@ class DriveLoop {
   DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception, const SlamConfig& slam,
             const Task& task, const PilotConfig& pilot);
 
-  // Until the task is done, the clock ends, stop is set, the battery is empty (autonomy/energy.h), or the depth camera or
-  // the drive is silent for a second. Then, the clock permitting, brakes and waits until the car stands.
-  // With a hand the pilot only advises the arbiter (autonomy/arbitrate.h), its task has no end, and an empty battery stops
-  // the pilot alone: the operator may bring the car home.
+  // Until the task is done, the clock ends, stop is set, the battery is empty (autonomy/energy.h), the depth camera or
+  // the drive is silent for a second, or the observer says that the car is lost. Then brakes, and waits until the car
+  // stands, as far as the clock permits. The same where something throws: the first exception leaves this function once
+  // the car stands. What a device throws, of whatever type, leaves it as a DeviceError that names the device.
+  // With a hand the pilot only advises the arbiter (autonomy/arbitrate.h), its task has no end, and an empty battery
+  // stops the pilot alone: the operator may bring the car home.
   LoopEnd Run(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand = {});
 
   const Slam& slam() const { return slam_; }
   const Energy& energy() const { return energy_; }
+  const char* silent_device() const { return last_depth_ < last_drive_ ? "depth camera" : "drive"; }  // of kDeviceLost
   const std::vector<double>& stack_ms() const { return stack_ms_; }  // one a depth frame: filter to decision
 
  private:
@@ -60,7 +65,9 @@ class DriveLoop {
   bool Tick(const LoopObserver& observer);  // true: the task is done
   bool TickByHand(const LoopObserver& observer, const Hand& hand);  // true: the operator quits
   std::optional<DriveCommand> Advice(Time now) const;
-  void Stand();
+  LoopEnd Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand);
+  void Send(const DriveCommand& command);
+  void Stand(FirstFault& faults);
   void AdaptExposure(const DepthFrame& frame);
 
   Robot robot_;

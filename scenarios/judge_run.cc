@@ -81,8 +81,34 @@ void Evidence::Add(const ColorFrame& frame) {
   color.Add(std::span<const std::uint8_t>(frame.bgr));
 }
 
+namespace {
+
+// The figures that need the path and the map against the truth, and the picture of both.
+void Measure(const Trajectory& true_path, const Trajectory& estimate, const Trajectory& online, const sim::World* world,
+             Metrics& metrics, MapPicture& picture) {
+  const std::vector<PosePair> pairs = PairAtEqualStamps(true_path, estimate);
+  if (const auto rpe = RpeOverOneMetre(pairs)) {
+    metrics.rpe_translation_percent = rpe->translation_percent;
+    metrics.rpe_rotation_deg_per_m = rpe->rotation_deg_per_m;
+  }
+  const auto ate = AlignAndAte(pairs);
+  if (!ate) return;
+  metrics.ate_rmse_m = picture.ate_rmse_m = ate->rmse_m;
+  if (const auto driven = AlignAndAte(PairAtEqualStamps(true_path, online))) metrics.ate_online_rmse_m = driven->rmse_m;
+  picture.T_world_map = ate->T_world_map;
+  picture.size = MeasureMapSize(picture.map, ate->T_world_map, picture.outline);
+  metrics.map_size_m = picture.size.size_m;
+  metrics.map_size_error_percent = picture.size.error_percent;
+  const sim::RayScene room(world->model(), CarBodies(*world));
+  const TrueRange true_range = TrueRangeOf(room);
+  metrics.map_to_plan_p95_m = MapToPlanP95_m(picture.map, ate->T_world_map, true_range);
+  metrics.coverage_percent = CoveragePercent(picture.map, ate->T_world_map, picture.outline, true_path, true_range);
+}
+
+}  // namespace
+
 RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robot& robot, const TrueWorld& true_world,
-                   const DriveLoop& loop, const Evidence& evidence, OutputFolder& folder) {
+                   const DriveLoop& loop, const Evidence& evidence, const OutputFolder& folder, FirstFault& faults) {
   RunResult result{.scenario = name, .seed = scenario.seed, .versions = Versions()};
   Metrics& metrics = result.metrics;
   const Slam& slam = loop.slam();
@@ -90,7 +116,6 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robo
   const Outline outline = true_world.world != nullptr ? true_world.world->plan_xy_m() : Outline{};
   const Trajectory true_path = truth != nullptr ? truth->trajectory() : Trajectory{};
   const Trajectory estimate = ToTrajectory(slam.trajectory()), online = ToTrajectory(slam.online());
-  const std::vector<MapPoint> map = MapPoints(slam, scenario.slam.map_points_min);
 
   metrics.distance_m = truth != nullptr ? PathLength_m(true_path) : slam.path_m();
   if (truth != nullptr) {
@@ -102,41 +127,43 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robo
   metrics.loops_closed = slam.loops();
   metrics.depth_frames = evidence.depth_frames;
   metrics.color_frames = evidence.color_frames;
-  metrics.frames_dropped = static_cast<std::int64_t>(robot.depth->Status().missed + (robot.color ? robot.color->Status().missed : 0));
   metrics.stack_ms = Percentiles(loop.stack_ms());
+  faults.Try([&] {
+    metrics.frames_dropped =
+        static_cast<std::int64_t>(robot.depth->Status().missed + (robot.color ? robot.color->Status().missed : 0));
+  });
 
-  const std::vector<PosePair> pairs = PairAtEqualStamps(true_path, estimate);
+  // Writes a file; gives the hash of what was written.
+  const auto write = [&](const char* file, const auto& bytes) {
+    std::optional<std::string> hash;
+    faults.Try([&] {
+      const std::string made = bytes();
+      folder.Write(file, made);
+      hash = HashOf(made);
+    });
+    return hash;
+  };
+  const auto trajectory_hash = write("trajectory_estimate.tum", [&] { return ToTum(estimate); });
+  write("trajectory_online.tum", [&] { return ToTum(online); });
+  if (truth != nullptr) write("trajectory_truth.tum", [&] { return ToTum(true_path); });
+
+  std::vector<MapPoint> map;
+  faults.Try([&] { map = MapPoints(slam, scenario.slam.map_points_min); });
+  const auto map_hash = write("map.ply", [&] { return ToPly(map); });
+  const GridMap grid = ToGridMap(slam.BuildOccupancy());
+  if (write("map.pgm", [&] { return ToPgm(grid); })) write("map.yaml", [&] { return ToMapYaml(grid, "map.pgm"); });
+
   MapPicture picture{.title = name + ", seed " + std::to_string(scenario.seed), .map = map, .outline = outline,
                      .truth = true_path, .estimate = estimate};
-  if (const auto ate = AlignAndAte(pairs)) {
-    metrics.ate_rmse_m = picture.ate_rmse_m = ate->rmse_m;
-    if (const auto driven = AlignAndAte(PairAtEqualStamps(true_path, online))) metrics.ate_online_rmse_m = driven->rmse_m;
-    picture.T_world_map = ate->T_world_map;
-    picture.size = MeasureMapSize(map, ate->T_world_map, outline);
-    metrics.map_size_m = picture.size.size_m;
-    metrics.map_size_error_percent = picture.size.error_percent;
-    const sim::RayScene room(true_world.world->model(), CarBodies(*true_world.world));
-    const TrueRange true_range = TrueRangeOf(room);
-    metrics.map_to_plan_p95_m = MapToPlanP95_m(map, ate->T_world_map, true_range);
-    metrics.coverage_percent = CoveragePercent(map, ate->T_world_map, outline, true_path, true_range);
-  }
-  if (const auto rpe = RpeOverOneMetre(pairs)) {
-    metrics.rpe_translation_percent = rpe->translation_percent;
-    metrics.rpe_rotation_deg_per_m = rpe->rotation_deg_per_m;
-  }
+  faults.Try([&] { Measure(true_path, estimate, online, true_world.world, metrics, picture); });
+  write("map.png", [&] { return ToPng(picture); });
 
-  const std::string tum = ToTum(estimate), ply = ToPly(map);
-  folder.Write("trajectory_estimate.tum", tum);
-  folder.Write("trajectory_online.tum", ToTum(online));
-  if (truth != nullptr) folder.Write("trajectory_truth.tum", ToTum(true_path));
-  folder.Write("map.ply", ply);
-  const GridMap grid = ToGridMap(slam.BuildOccupancy());
-  folder.Write("map.pgm", ToPgm(grid));
-  folder.Write("map.yaml", ToMapYaml(grid, "map.pgm"));
-  folder.Write("map.png", ToPng(picture));
   if (!true_world.repeats) return result;
-  result.hashes = {.state = truth->state_hash(), .depth = evidence.depth.Hex(), .color = std::nullopt,
-                   .trajectory = HashOf(tum), .map = HashOf(ply)};
+  result.hashes = {.state = truth->state_hash(),
+                   .depth = evidence.depth.Hex(),
+                   .color = std::nullopt,
+                   .trajectory = trajectory_hash,
+                   .map = map_hash};
   if (robot.color) result.hashes.color = evidence.color.Hex();
   return result;
 }

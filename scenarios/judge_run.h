@@ -5,6 +5,7 @@
 
 #include "robot/twin/twin.h"
 #include "scenarios/drive_loop.h"
+#include "scenarios/first_fault.h"
 #include "scenarios/judge/output_folder.h"
 #include "scenarios/judge/result.h"
 #include "scenarios/judge/sha256.h"
@@ -27,8 +28,10 @@ struct TrueWorld {
   bool repeats = false;  // the same bits every time: hashes mean something
 };
 
-// Writes trajectories and maps into the folder and fills in all figures but those of wall time. Checks are not evaluated.
+// Writes trajectories and maps into the folder and fills in all figures but those of wall time. Checks are not
+// evaluated. A file that cannot be written, or a figure that cannot be had, is left out, and the fault kept: the rest
+// comes.
 RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robot& robot, const TrueWorld& true_world,
-                   const DriveLoop& loop, const Evidence& evidence, OutputFolder& folder);
+                   const DriveLoop& loop, const Evidence& evidence, const OutputFolder& folder, FirstFault& faults);
 
 }  // namespace merlin

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "robot/description/description.h"
@@ -46,6 +48,15 @@ double PeakRss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
+// Whoever stops reading what we tell does not stop the car.
+template <class Progress>
+void Tell(const Progress& progress) {
+  try {
+    progress();
+  } catch (const std::exception&) {
+  }
+}
+
 // Holds the run back to the wall's pace, and reports progress now and then.
 class Pacer {
  public:
@@ -58,7 +69,7 @@ class Pacer {
     }
     if (!options_.progress || SecondsSince(reported_) < 0.2) return;
     reported_ = WallClock::now();
-    options_.progress(now, distance_m, doing);
+    Tell([&] { options_.progress(now, distance_m, doing); });
   }
 
  private:
@@ -67,16 +78,49 @@ class Pacer {
   WallClock::time_point begin_ = WallClock::now(), reported_ = begin_;
 };
 
+// What the run's caller is to throw: after the start no InputError is the user's fault, and the twin's devices are
+// ours.
+std::exception_ptr Blamed(const std::exception_ptr& fault, RobotKind robot) {
+  try {
+    std::rethrow_exception(fault);
+  } catch (const InputError& error) {
+    return std::make_exception_ptr(std::runtime_error(error.what()));
+  } catch (const DeviceError& error) {
+    return robot == RobotKind::kTwin ? std::make_exception_ptr(std::runtime_error(error.what())) : fault;
+  } catch (const std::exception&) {
+    return fault;
+  } catch (...) {
+    return std::make_exception_ptr(std::runtime_error("an unknown exception was thrown"));
+  }
+}
+
+std::string What(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const std::exception& what) {
+    return what.what();
+  }
+}
+
+// A robot, and what its plug knows of it.
+struct Plug {
+  Robot robot;
+  std::function<TrueWorld()> true_world;        // asked once, when the loop is over
+  std::function<void(Time stamp)> keep;         // notes the truth at a depth frame's stamp
+  std::function<std::string()> car_lost;        // why the truth ends the run; empty: it does not
+  std::function<std::string()> complaint = {};  // what the devices say of themselves; may be empty
+  std::string gl_name = {}, note = {};
+};
+
 // One run of whatever robot: drive, judge, write.
 class Session {
  public:
   Session(const RunOptions& options, const CarDescription& car, const std::atomic<bool>& stop)
       : options_(options), stop_(stop), car_(car) {}
 
-  // keep: notes the truth at a stamp. time: of the world, or of the clock where there is none.
-  RunReport Drive(const Robot& robot, const std::function<TrueWorld()>& true_world, const std::function<void(Time)>& keep,
-                  const std::string& gl_name, const std::string& note) {
+  RunReport Drive(const Plug& plug) {
     const Scenario& scenario = options_.scenario;
+    const Robot& robot = plug.robot;
     OutputFolder folder(options_.out);
     folder.Write("scenario.yaml", ToYaml(scenario));
     DriveLoop loop(robot, car_, scenario.perception, scenario.slam, scenario.task, scenario.pilot);
@@ -85,40 +129,64 @@ class Session {
     const auto first_step = WallClock::now();
     const Time first = robot.clock->Now();
     Pacer pacer(options_, stop_);
-    const LoopEnd end = loop.Run(
-        stop_, {.depth = [&](const DepthFrame& frame) { evidence.Add(frame), keep(frame.stamp); },
-                .color = [&](const ColorFrame& frame) { evidence.Add(frame); },
-                .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop.slam().path_m(), decision.doing); },
-                .hand = [&](Time now, const HandStatus& status) {
-                  if (options_.hand_status) options_.hand_status(now, status);
-                  pacer.Tick(now, loop.slam().path_m(), Name(status.arbitration.driver));
-                }},
-        options_.hand);
+    const LoopObserver observer{
+        .depth = [&](const DepthFrame& frame) { evidence.Add(frame), plug.keep(frame.stamp); },
+        .color = [&](const ColorFrame& frame) { evidence.Add(frame); },
+        .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop.slam().path_m(), decision.doing); },
+        .hand =
+            [&](Time now, const HandStatus& status) {
+              if (options_.hand_status) Tell([&] { options_.hand_status(now, status); });
+              pacer.Tick(now, loop.slam().path_m(), Name(status.arbitration.driver));
+            },
+        .car_lost = [&] { return !plug.car_lost().empty(); }};
+    FirstFault faults;
+    LoopEnd end = LoopEnd::kTimeUp;
+    faults.Try([&] { end = loop.Run(stop_, observer, options_.hand); });
     const double wall_s = SecondsSince(first_step);
 
-    RunReport report{.result = JudgeRun(options_.name, scenario, robot, true_world(), loop, evidence, folder),
-                     .gl_name = gl_name,
-                     .note = note};
+    RunReport report{
+        .result = {.scenario = options_.name, .seed = scenario.seed}, .gl_name = plug.gl_name, .note = plug.note};
     RunResult& result = report.result;
+    std::string reason = Reason(end, loop, plug);
+    faults.Try([&] { reason = plug.car_lost().empty() ? reason : plug.car_lost(); });
+    faults.Try(
+        [&] { result = JudgeRun(options_.name, scenario, robot, plug.true_world(), loop, evidence, folder, faults); });
     result.metrics.wall_time_s = wall_s;
     result.metrics.setup_s = setup_s;
     result.metrics.sim_time_s = Seconds(robot.clock->Now() - first);
     result.metrics.real_time_factor = *result.metrics.sim_time_s / wall_s;
     result.metrics.peak_rss_mb = PeakRss_mb();
     result.checks = Evaluate(scenario.checks, result.metrics, options_.name);
-    if (end == LoopEnd::kDeviceLost) result.fault = "the depth camera or the drive fell silent for a second";
-    if (end == LoopEnd::kBatteryEmpty)
-      result.fault = fmt::format("the battery is empty: {:.2f} V without the motor, and the car stops below {:.2f} V",
-                                 loop.energy().rest_v().value_or(0.0), loop.energy().stop_v());
-    result.verdict = end == LoopEnd::kInterrupted ? Verdict::kInterrupted
-                     : !result.fault.empty()     ? Verdict::kFail
-                                                 : Judge(result.checks);
-    folder.Write("junit.xml", ToJUnit(result));
-    folder.Finish(ToJson(result));
+    const auto conclude = [&] {
+      if (faults.get()) report.error = Blamed(faults.get(), options_.robot);
+      result.fault = report.error ? What(report.error) : reason;
+      result.verdict = report.error                   ? Verdict::kFail
+                       : end == LoopEnd::kInterrupted ? Verdict::kInterrupted
+                       : !result.fault.empty()        ? Verdict::kFail
+                                                      : Judge(result.checks);
+    };
+    conclude();
+    faults.Try([&] { folder.Write("junit.xml", ToJUnit(result)); });
+    conclude();
+    faults.Try([&] { folder.Finish(ToJson(result)); });
+    conclude();
     return report;
   }
 
  private:
+  // Why the loop ended before its time; empty: it did not, or somebody wished it.
+  static std::string Reason(LoopEnd end, const DriveLoop& loop, const Plug& plug) {
+    if (end == LoopEnd::kDeviceLost) {
+      const std::string complaint = plug.complaint ? plug.complaint() : "";
+      return fmt::format("the {} fell silent for a second{}", loop.silent_device(),
+                         complaint.empty() ? "" : " (" + complaint + ")");
+    }
+    if (end == LoopEnd::kBatteryEmpty)
+      return fmt::format("the battery is empty: {:.2f} V without the motor, and the car stops below {:.2f} V",
+                         loop.energy().rest_v().value_or(0.0), loop.energy().stop_v());
+    return "";
+  }
+
   const RunOptions& options_;
   const std::atomic<bool>& stop_;
   const CarDescription& car_;
@@ -140,9 +208,15 @@ RunReport RunInTwin(const RunOptions& options, const CarDescription& car, const 
   RequirePlan(options, twin->world());
   Truth truth(options.scenario, twin->world());
   twin->OnStep([&truth](sim::World& world) { truth.Watch(world); });
-  return session.Drive(
-      twin->robot(), [&] { return TrueWorld{&twin->world(), &truth, true}; }, [&](Time stamp) { truth.Keep(stamp); },
-      twin->gl_name(), WithWarnings(note, twin->world()));
+  return session.Drive({.robot = twin->robot(),
+                        .true_world =
+                            [&] {
+                              return TrueWorld{&twin->world(), &truth, true};
+                            },
+                        .keep = [&](Time stamp) { truth.Keep(stamp); },
+                        .car_lost = [&] { return truth.car_lost(); },
+                        .gl_name = twin->gl_name(),
+                        .note = WithWarnings(note, twin->world())});
 }
 
 // A folder of this run's own for the devices' sockets, gone with it.
@@ -182,9 +256,14 @@ HardwareConfig DevicesOf(const EmulatedRobot& emulated) {
   return config;
 }
 
+std::string Joined(const std::vector<std::string>& sentences, const char* between) {
+  std::string joined;
+  for (const std::string& sentence : sentences) joined += (joined.empty() ? "" : between) + sentence;
+  return joined;
+}
+
 void RequireReady(HardwareRobot& robot) {
-  std::string faults;
-  for (const std::string& complaint : robot.WaitUntilReady(kReady)) faults += (faults.empty() ? "" : "\n") + complaint;
+  const std::string faults = Joined(robot.WaitUntilReady(kReady), "\n");
   if (!faults.empty()) throw MachineError(faults);
 }
 
@@ -231,7 +310,17 @@ RunReport RunEmulated(const RunOptions& options, const CarDescription& car, cons
     locked([&](Twin&) { truth->Keep(stamp); });
     if (clock.Now() >= end) clock.End();
   };
-  RunReport report = session.Drive(hardware.robot(), true_world, keep, gl_name, note);
+  const auto car_lost = [&] {
+    if (const std::exception_ptr failure = emulated->failure()) std::rethrow_exception(failure);
+    return locked([&](Twin&) { return truth->car_lost(); });
+  };
+  RunReport report = session.Drive({.robot = hardware.robot(),
+                                    .true_world = true_world,
+                                    .keep = keep,
+                                    .car_lost = car_lost,
+                                    .complaint = [&] { return Joined(hardware.Complaints(), "; "); },
+                                    .gl_name = gl_name,
+                                    .note = note});
   if (emulated->lag() > std::chrono::milliseconds(100))
     report.note += fmt::format("{}the world fell {:.0f} ms behind the clock: this machine was too slow at times",
                                report.note.empty() ? "" : "; ", 1e3 * Seconds(emulated->lag()));
@@ -246,12 +335,14 @@ RunReport RunOnHardware(const RunOptions& options, const CarDescription& car, co
   HardwareRobot hardware(config, cameras, clock);
   RequireReady(hardware);
   const Time end = clock.Now() + FromSeconds(options.scenario.duration_s);
-  return session.Drive(
-      hardware.robot(), [] { return TrueWorld{}; },
-      [&](Time) {
-        if (clock.Now() >= end) clock.End();
-      },
-      "", "");
+  const auto keep = [&](Time) {
+    if (clock.Now() >= end) clock.End();
+  };
+  return session.Drive({.robot = hardware.robot(),
+                        .true_world = [] { return TrueWorld{}; },
+                        .keep = keep,
+                        .car_lost = [] { return std::string(); },
+                        .complaint = [&] { return Joined(hardware.Complaints(), "; "); }});
 }
 
 RunReport RunWith(const RunOptions& options, const CarDescription& car, const std::atomic<bool>& stop) {

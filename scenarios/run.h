@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -32,13 +33,18 @@ struct RunOptions {
 
 struct RunReport {
   RunResult result;
+  // What broke the run, or kept a file from being written; null: nothing. Whoever tells of the run rethrows it then: a
+  // DeviceError, a MachineError (disk full), or another exception where it is our own fault. result.fault says the
+  // same.
+  std::exception_ptr error{};
   std::string gl_name;                         // empty: without colour
   std::string note;                            // one sentence the user should know; may be empty
 };
 
 // stop: set from a signal handler; the car stands, files are written, the verdict is kInterrupted.
-// Throws InputError, MachineError (GL missing where the scenario requires colour, disk full) before anything is simulated
-// or written that looks whole.
+// Throws InputError, MachineError (GL missing where the scenario requires colour, disk full) before anything is
+// simulated or written that looks whole. From then on it throws nothing: the car stands, what can still be written is
+// written, the verdict is kFail, and the report holds the error.
 RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace merlin

@@ -22,7 +22,7 @@ std::vector<sim::Obstacle> ObstaclesOf(const Scenario& scenario) {
 }
 
 Truth::Truth(const Scenario& scenario, const sim::World& world)
-    : events_(scenario.obstacles), placed_(events_.size(), false) {
+    : car_(world, IsOnStand(scenario.task)), events_(scenario.obstacles), placed_(events_.size(), false) {
   recent_.push_back({world.Now(), world.T_world_base()});
   if (!events_.empty()) obstacle_stop_s_ = 0.0;
 }
@@ -36,6 +36,7 @@ void Truth::Watch(sim::World& world) {
     if (!last_touch_ || now - *last_touch_ > kEpisodeGap) ++collisions_;
     last_touch_ = now;
   }
+  car_.Watch(world);
   WatchObstacles(world);
 }
 

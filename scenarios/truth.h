@@ -3,8 +3,10 @@
 
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "scenarios/car_watch.h"
 #include "scenarios/judge/sha256.h"
 #include "scenarios/judge/trajectory.h"
 #include "scenarios/scenario.h"
@@ -19,13 +21,15 @@ class Truth {
  public:
   Truth(const Scenario& scenario, const sim::World& world);
 
-  // After every step: places and removes obstacles, counts contacts, hashes the state.
+  // After every step: places and removes obstacles, counts contacts, hashes the state, watches over the car.
   void Watch(sim::World& world);
   // Keeps the true pose at a stamp of the last second, between two steps if need be.
   void Keep(Time stamp);
 
   const Trajectory& trajectory() const { return trajectory_; }
   int collisions() const { return collisions_; }
+  // Why the run must end; empty: nothing of the kind.
+  const std::string& car_lost() const { return car_.lost(); }
   std::string state_hash() const { return state_.Hex(); }
   std::optional<double> obstacle_gap_m() const { return obstacle_gap_m_; }
   // Longest time in a row that the car stood while an obstacle was there; empty without obstacles.
@@ -34,6 +38,7 @@ class Truth {
  private:
   void WatchObstacles(sim::World& world);
 
+  CarWatch car_;
   std::vector<ObstacleEvent> events_;
   std::vector<bool> placed_;
   std::deque<StampedPose> recent_;

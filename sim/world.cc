@@ -291,6 +291,19 @@ std::vector<Touch> World::CarTouches() const {
   return touches;
 }
 
+bool World::WheelTouchesGround() const {
+  constexpr double kLevel = 0.7071;  // cosine of 45 degrees
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& contact = data_->contact[i];
+    int wheel = contact.geom[0], ground = contact.geom[1];
+    if (wheel < 0 || ground < 0 || contact.dist > 0.0) continue;
+    if (!is_wheel_[wheel]) std::swap(wheel, ground);
+    if (!is_wheel_[wheel] || is_car_[ground]) continue;
+    if (is_floor_[ground] || std::abs(contact.frame[2]) > kLevel) return true;
+  }
+  return false;
+}
+
 bool World::IsCarGeom(int geom_id) const { return is_car_.at(static_cast<std::size_t>(geom_id)); }
 
 int World::ObstacleBody(const std::string& name) const {

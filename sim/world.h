@@ -73,6 +73,9 @@ class World {
   BodyMotion CameraMotion(const Pose& T_base_camera) const;
   double Speed_m_s() const;  // of the rear axle's middle along x, signed
   std::vector<Touch> CarTouches() const;
+  // Whether a wheel stands on a geom named "floor*", or on anything else that is not the car and less than 45 degrees
+  // steep where it touches.
+  bool WheelTouchesGround() const;
   bool IsCarGeom(int geom_id) const;
 
   // Puts the obstacle's bottom centre at the pose, or takes it away again.

@@ -74,8 +74,18 @@ std::vector<std::string> HardwareRobot::WaitUntilReady(Duration limit) {
   };
   add(Complaint("drive", drive_.Status(), drive_.Complaint()));
   if (compass_) add(Complaint("compass", compass_->Status(), compass_->Complaint()));
-  if (!depth) add("depth camera: no frame came");
+  if (const std::string own = depth_->Complaint(); !depth)
+    add("depth camera: no frame came" + (own.empty() ? "" : ": " + own));
   if (!color) add("colour camera: no picture came");
+  return complaints;
+}
+
+std::vector<std::string> HardwareRobot::Complaints() const {
+  std::vector<std::string> complaints{Complaint("drive", drive_.Status(), drive_.Complaint()),
+                                      Complaint("depth camera", depth_->Status(), depth_->Complaint())};
+  if (compass_) complaints.push_back(Complaint("compass", compass_->Status(), compass_->Complaint()));
+  if (color_) complaints.push_back(Complaint("colour camera", color_->Status()));
+  std::erase(complaints, "");
   return complaints;
 }
 

@@ -51,6 +51,8 @@ class HardwareRobot {
   Robot robot();
   // Until every device has delivered, at most limit; then what is wrong with each that has not, one sentence each.
   std::vector<std::string> WaitUntilReady(Duration limit);
+  // What is wrong now with each device that is not well, one sentence each.
+  std::vector<std::string> Complaints() const;
 
  private:
   RealClock& clock_;

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <exception>
+#include <utility>
 
 #include "robot/hardware/shared_library.h"
 #include "robot/protocol/pmd_api.h"
@@ -34,8 +36,11 @@ class Library {
                                    told ? std::string(text.data()) : fmt::format("error {}", result)));
   }
   void CloseHandle() {
-    if (handle_ != 0) close_(handle_);
-    handle_ = 0;
+    const PmdHandle handle = std::exchange(handle_, 0);
+    try {
+      if (handle != 0) close_(handle);
+    } catch (...) {  // a library that cannot close: nothing is left to be done
+    }
   }
   void Update() { Check(update_(handle_), "pmdUpdate"); }
 
@@ -200,11 +205,49 @@ class Generation1 final : public PmdCamera, private Library {
   Pmd1GetImage* intensities_;
 };
 
+// A camera whose library may throw exceptions of its own, whatever the language of its calls says.
+template <class Generation>
+class Guarded final : public PmdCamera {
+ public:
+  Guarded(const PmdCameraConfig& config, const DepthCameraSheet& sheet)
+      : path_(config.library), camera_(config, sheet) {}
+
+  void Open() override {
+    Guard([this] { camera_.Open(); });
+  }
+  void Close() override { camera_.Close(); }
+  void Set(const DepthSettings& settings) override {
+    Guard([&] { camera_.Set(settings); });
+  }
+  PmdFrame WaitForFrame() override {
+    return Guard([this] { return camera_.WaitForFrame(); });
+  }
+
+ private:
+  template <class Call>
+  auto Guard(const Call& call) {
+    try {
+      return call();
+    } catch (const InputError&) {
+      throw;
+    } catch (const MachineError&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw MachineError(path_ + ": the library threw: " + error.what());
+    } catch (...) {
+      throw MachineError(path_ + ": the library threw an unknown exception");
+    }
+  }
+
+  std::string path_;
+  Generation camera_;
+};
+
 }  // namespace
 
 std::unique_ptr<PmdCamera> LoadPmdCamera(const PmdCameraConfig& config, const DepthCameraSheet& sheet) {
-  if (config.generation == 1) return std::make_unique<Generation1>(config, sheet);
-  return std::make_unique<Generation2>(config, sheet);
+  if (config.generation == 1) return std::make_unique<Guarded<Generation1>>(config, sheet);
+  return std::make_unique<Guarded<Generation2>>(config, sheet);
 }
 
 }  // namespace merlin

@@ -1,5 +1,6 @@
 // A ToF camera through its maker's library (robot/protocol/pmd_api.h), the same for both generations of its calls.
-// Every call may block and throws MachineError with the library's own words where it fails.
+// Every call may block and throws MachineError with the library's own words where it fails, also where the library
+// throws an exception of its own.
 #pragma once
 
 #include <memory>

@@ -64,6 +64,11 @@ void TofCamera::Configure(const DepthSettings& settings) {
   wanted_is_new_ = true;
 }
 
+std::string TofCamera::Complaint() const {
+  const std::lock_guard lock(mutex_);
+  return complaint_;
+}
+
 void TofCamera::Run(std::stop_token stop) {
   while (!stop.stop_requested()) {
     try {
@@ -71,11 +76,11 @@ void TofCamera::Run(std::stop_token stop) {
       SetIfNew();
       const PmdFrame frame = camera_->WaitForFrame();
       Deliver(frame, clock_.Now());
-    } catch (const InputError&) {  // it works, but not as the sheet says
-      Lose(DeviceStatus::Health::kFaulty, stop);
-    } catch (const MachineError&) {
+    } catch (const InputError& error) {  // it works, but not as the sheet says
+      Lose(DeviceStatus::Health::kFaulty, error.what(), stop);
+    } catch (const std::exception& error) {
       // A camera that is there and gives no frame is silent, which the mailbox notices; one that is not is absent.
-      Lose(open_ ? DeviceStatus::Health::kOk : DeviceStatus::Health::kAbsent, stop);
+      Lose(open_ ? DeviceStatus::Health::kOk : DeviceStatus::Health::kAbsent, error.what(), stop);
     }
   }
 }
@@ -128,10 +133,16 @@ void TofCamera::Deliver(const PmdFrame& raw, Time arrival) {
   last_stamp_ = frame.stamp;
   mailbox_.Put(std::move(frame), arrival);
   lost_once_ = false;
+  const std::lock_guard lock(mutex_);
+  complaint_.clear();
 }
 
-void TofCamera::Lose(DeviceStatus::Health health, std::stop_token stop) {
+void TofCamera::Lose(DeviceStatus::Health health, const std::string& complaint, std::stop_token stop) {
   camera_->Close();
+  {
+    const std::lock_guard lock(mutex_);
+    complaint_ = complaint;
+  }
   open_ = false;
   was_lost_ = true;
   if (health == DeviceStatus::Health::kFaulty) mailbox_.CountGarbage();

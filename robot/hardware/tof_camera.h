@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "robot/hal/clock.h"
@@ -44,6 +45,7 @@ class TofCamera final : public DepthCamera {
   void Configure(const DepthSettings& settings) override;
   std::optional<DepthFrame> Poll() override { return mailbox_.Take(); }
   DeviceStatus Status() const override { return mailbox_.Status(clock_.Now()); }
+  std::string Complaint() const;  // why the last call of the library failed; empty if a frame came since
 
  private:
   void CheckAll(const DepthSettings& settings) const;
@@ -51,14 +53,15 @@ class TofCamera final : public DepthCamera {
   void OpenIfClosed();
   void SetIfNew();
   void Deliver(const PmdFrame& raw, Time arrival);
-  void Lose(DeviceStatus::Health health, std::stop_token stop);
+  void Lose(DeviceStatus::Health health, const std::string& complaint, std::stop_token stop);
 
   TofCameraConfig config_;
   DepthCameraInfo info_;
   const Clock& clock_;
   Mailbox<DepthFrame> mailbox_;
 
-  std::mutex mutex_;  // of the next two
+  mutable std::mutex mutex_;  // of the next three
+  std::string complaint_;
   DepthSettings wanted_;
   bool wanted_is_new_ = true;
   std::condition_variable_any stopping_;

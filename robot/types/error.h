@@ -1,4 +1,4 @@
-// The two errors a boundary (file, wire, user) may raise. Each is one sentence: where, what, expected, got.
+// The errors a boundary (file, wire, user, device) may raise. Each is one sentence: where, what, expected, got.
 #pragma once
 
 #include <stdexcept>
@@ -18,6 +18,12 @@ class InputError : public std::runtime_error {
 
 // The input is right, but this machine cannot: no GL, no device, disk full. Programs exit with 3.
 class MachineError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A device failed while the car was in use. Programs exit with 1, once the car stands.
+class DeviceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

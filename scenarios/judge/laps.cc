@@ -1,68 +1,106 @@
 #include "scenarios/judge/laps.h"
 
-#include <cstdlib>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace merlin {
 namespace {
 
-constexpr double kCornerReach_m = 2.5;  // the middle of a 2 m corridor passes its outer corner at 1.4 m
-constexpr double kStartReach_m = 1.0;
+constexpr double kAtCentre_m = 0.1;      // nearer than this the car stands over the centre
+constexpr double kRounding_turns = 1e-9;  // a path that ends where it began has crossed the line
 
-// The nearest corner within reach.
-std::optional<int> CornerAt(const Eigen::Vector2d& position_m, const Outline& outline) {
-  std::optional<int> nearest;
-  double nearest_m = kCornerReach_m;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const double distance_m = (outline[i] - position_m).norm();
-    if (distance_m > nearest_m) continue;
-    nearest_m = distance_m;
-    nearest = static_cast<int>(i);
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// Of the area, whichever way round the corners run; none for an outline without area.
+std::optional<Eigen::Vector2d> Centroid(const Outline& outline) {
+  if (outline.size() < 3) return std::nullopt;
+  const Eigen::Vector2d origin = outline.front();  // keeps the products small, far from the world's origin
+  double doubled_area_m2 = 0.0, size_m2 = 0.0;
+  Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+  for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
+    const Eigen::Vector2d a = outline[i] - origin, b = outline[i + 1] - origin;
+    doubled_area_m2 += Cross(a, b);
+    moment += Cross(a, b) * (a + b) / 3.0;
+    size_m2 = std::max({size_m2, a.squaredNorm(), b.squaredNorm()});
   }
-  return nearest;
+  if (!(std::abs(doubled_area_m2) > 1e-9 * size_m2)) return std::nullopt;
+  return origin + moment / doubled_area_m2;
 }
 
-// Corners passed since the lap began, counted around the outline with sign: the first is 0, the next 1 or -1.
-class CornerCount {
+// The line of laps.h, in an upright frame at the centre: n points at the nearest outer wall, u to the left of n.
+class StartingLine {
  public:
-  explicit CornerCount(int corners) : corners_(corners) {}
-
-  void Pass(int corner) {
-    const int step = last_ == kNone ? 0 : (corner - last_ + corners_) % corners_;
-    if (step == 1) {
-      ++turns_;
-    } else if (step == corners_ - 1) {
-      --turns_;
-    } else if (step != 0) {
-      turns_ = 0;
-    }
-    last_ = corner;
+  StartingLine(const Eigen::Vector2d& start_centre, const OutlineWall& wall, double to_wall_m) {
+    Eigen::Vector2d n = wall.Normal();
+    if (n.dot(start_centre) < 0.0) n = -n;
+    u_m_ = Cross(n, start_centre);
+    n_min_m_ = std::max(n.dot(start_centre) - to_wall_m, 0.0);
+    n_rad_ = std::atan2(n.y(), n.x());
   }
-  bool AllPassed() const { return std::abs(turns_) >= corners_ - 1; }
+  // Where the line is at a distance from the centre, as an angle about the centre, continuous.
+  double Angle_rad(double distance_m) const {
+    const double n_m = std::sqrt(std::max(distance_m * distance_m - u_m_ * u_m_, n_min_m_ * n_min_m_));
+    return n_rad_ + std::atan2(u_m_, n_m);
+  }
 
  private:
-  static constexpr int kNone = -1;
-  int corners_;
-  int turns_ = 0;
-  int last_ = kNone;
+  double u_m_, n_min_m_, n_rad_;
+};
+
+// How far the path has wound, in turns since it left the starting line: whole numbers are on the line.
+class LapCount {
+ public:
+  // What was wound before does not count: a lap takes a whole turn from here at least, and ends on the line.
+  void Begin(double turns) {
+    next_left_ = std::ceil(turns + 1.0 - kRounding_turns);
+    next_right_ = std::floor(turns - 1.0 + kRounding_turns);
+  }
+  void MoveTo(double turns) {
+    const bool left = turns > next_left_ - kRounding_turns, right = turns < next_right_ + kRounding_turns;
+    if (!left && !right) return;
+    ++laps_;
+    Begin(left ? next_left_ : next_right_);
+  }
+  int laps() const { return laps_; }
+
+ private:
+  double next_left_ = 1.0, next_right_ = -1.0;
+  int laps_ = 0;
 };
 
 }  // namespace
 
 int CountLaps(const Trajectory& truth, const Outline& outline) {
-  if (outline.size() < 3 || truth.empty()) return 0;
-  const Eigen::Vector2d start_m = truth.front().T.translation().head<2>();
-  CornerCount count(static_cast<int>(outline.size()));
-  int laps = 0;
-  for (const StampedPose& pose : truth) {
-    const Eigen::Vector2d position_m = pose.T.translation().head<2>();
-    if (const std::optional<int> corner = CornerAt(position_m, outline)) count.Pass(*corner);
-    if (count.AllPassed() && (position_m - start_m).norm() <= kStartReach_m) {
-      ++laps;
-      count = CornerCount(static_cast<int>(outline.size()));
-    }
+  const std::optional<Eigen::Vector2d> centre = Centroid(outline);
+  std::vector<Eigen::Vector2d> path;  // from the centre
+  for (const StampedPose& pose : truth)
+    if (centre && pose.T.translation().allFinite()) path.push_back(pose.T.translation().head<2>() - *centre);
+  if (path.empty()) return 0;
+
+  const Eigen::Vector2d start_world = path.front() + *centre;
+  const std::vector<OutlineWall> walls = Walls(outline);
+  const OutlineWall& nearest =
+      *std::ranges::min_element(walls, {}, [&](const OutlineWall& wall) { return wall.Distance_m(start_world); });
+  const StartingLine line(path.front(), nearest, nearest.Distance_m(start_world));
+
+  LapCount count;
+  double angle_rad = line.Angle_rad(path.front().norm());  // of the path about the centre, without jumps
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Eigen::Vector2d &before = path[i - 1], &now = path[i];
+    const bool at_centre = OutlineWall{before, now}.Distance_m(Eigen::Vector2d::Zero()) < kAtCentre_m;
+    if (at_centre)
+      angle_rad = std::atan2(now.y(), now.x());
+    else
+      angle_rad += std::atan2(Cross(before, now), before.dot(now));
+    const double turns = (angle_rad - line.Angle_rad(now.norm())) / (2.0 * std::numbers::pi);
+    if (at_centre)
+      count.Begin(turns);
+    else
+      count.MoveTo(turns);
   }
-  return laps;
+  return count.laps();
 }
 
 }  // namespace merlin

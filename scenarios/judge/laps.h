@@ -1,4 +1,4 @@
-// Counts laps of a closed corridor from the true path.
+// Counts laps around a room from the true path.
 #pragma once
 
 #include "scenarios/judge/outline.h"
@@ -6,9 +6,19 @@
 
 namespace merlin {
 
-// A lap: every corner passed in the outline's order, either way round, and then back within 1 m of the first position.
-// A corner is passed within 2.5 m of the outline's corner, seen from above. Turning back takes corners back; a corner
-// left out starts the count anew. 0 for a room without an outline.
+// A lap: the path winds once around the centre of the outline's area, either way round, and crosses the starting line
+// again. The width of the corridor and the lane do not matter.
+//
+// The starting line runs from the centre to the start and on to infinity:
+//
+//            e---------c   c  the centre
+//            |             e  as far from the start as the outer wall is, but on its inner side
+//   corridor s             s  the start; from e outwards the line stands square to the nearest outer wall
+//   ---------+---------    outer wall
+//
+// Driving back takes back what was wound. A path that comes within 0.1 m of the centre does not wind around it: the
+// count of the lap under way starts anew. After a lap the next one begins on the line, either way round.
+// Positions that are not finite are passed over. 0 for a room without an outline, or one without area.
 int CountLaps(const Trajectory& truth, const Outline& outline);
 
 }  // namespace merlin

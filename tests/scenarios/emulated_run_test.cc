@@ -51,6 +51,21 @@ TEST(EmulatedRobot, SaysThatTheCamerasLibraryIsMissingBeforeAnythingMoves) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "run"));
 }
 
+// 48 x 64 pixels, forty frames, then exceptions.
+TEST(EmulatedRobot, StandsAndTellsWhyWhenTheCamerasLibraryThrows) {
+  const TemporaryFolder folder;
+  setenv("MERLIN_PMD_LIBRARY", THROWING_PMD_LIBRARY, 1);
+  setenv("MERLIN_THROWING_PMD", "64x48x60", 1);
+  const RunReport report = Drive(RobotKind::kEmulated, folder.path() / "run", {"duration_s=15"});
+  unsetenv("MERLIN_PMD_LIBRARY");
+  EXPECT_EQ(report.result.verdict, Verdict::kFail);
+  EXPECT_FALSE(report.error);
+  EXPECT_NE(report.result.fault.find("the depth camera fell silent for a second"), std::string::npos)
+      << report.result.fault;
+  EXPECT_NE(report.result.fault.find("the lamp has burnt out"), std::string::npos) << report.result.fault;
+  EXPECT_NE(Contents(folder.path() / "run/result.json").find("the lamp has burnt out"), std::string::npos);
+}
+
 std::string Complaint(const std::filesystem::path& file, const std::string& yaml) {
   std::ofstream(file) << yaml;
   try {

@@ -170,6 +170,29 @@ TEST(Cli, EndsWithExit130AndAnInterruptedVerdictOnCtrlC) {
   EXPECT_NE(Contents(folder.path() / "o/result.json").find("interrupted"), std::string::npos);
 }
 
+TEST(Cli, EndsWithExit3WhereTheDiskIsFullAndKeepsWhatFits) {
+  const TemporaryFolder folder;
+  const Outcome outcome = merlin::Run(
+      "ulimit -f 30 && '" MERLIN_BINARY "' run corridor_short --gl off --duration 4 --out o 2>&1", folder.path());
+  EXPECT_EQ(outcome.code, 3) << outcome.said;
+  EXPECT_NE(outcome.said.find("merlin: o/map.ply: cannot be written"), std::string::npos) << outcome.said;
+  EXPECT_NE(Contents(folder.path() / "o/result.json").find("o/map.ply: cannot be written"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "o/trajectory_truth.tum"));
+}
+
+TEST(Cli, EndsWithExit4InABadStateWhoeverReadsItsProgress) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "room.xml")
+      << "<mujoco><worldbody><geom name='floor' type='plane' size='0 0 1'/><body pos='0 0 50'><joint type='slide' "
+         "axis='0 0 1' stiffness='-132' springref='-1'/><geom size='.1' mass='1'/></body></worldbody></mujoco>";
+  const Outcome outcome =
+      Merlin("run corridor_short --gl off --duration 9 --set car.start.y_m=0 --set room=room.xml --out o",
+             folder.path(), "2>/dev/full");
+  EXPECT_EQ(outcome.code, 4) << outcome.said;
+  EXPECT_NE(outcome.said.find("stopped: MuJoCo stopped at"), std::string::npos) << outcome.said;
+  EXPECT_NE(Contents(folder.path() / "o/result.json").find("MuJoCo stopped at"), std::string::npos);
+}
+
 TEST(Cli, ListsWhatThereIs) {
   const TemporaryFolder folder;
   const Outcome outcome = Merlin("list", folder.path());

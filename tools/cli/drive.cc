@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <exception>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -138,6 +139,8 @@ int Drive(const DriveArguments& arguments) {
   fmt::print("drove {:.2f} m in {:.1f} s, {} collisions\nfiles: {} (look at map.png)\n",
              result.metrics.distance_m.value_or(0.0), result.metrics.sim_time_s.value_or(0.0),
              result.metrics.collisions.value_or(0), options.out.string());
+  std::fflush(stdout);  // what was told so far comes before the error
+  if (report.error) std::rethrow_exception(report.error);
   return result.verdict == Verdict::kPass ? kPass : result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
 }
 

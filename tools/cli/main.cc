@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGHUP, &action, nullptr);
-  signal(SIGPIPE, SIG_IGN);  // whoever stops reading our progress does not stop the car
+  signal(SIGPIPE, SIG_IGN);  // whoever stops reading our progress does not stop the car,
+  signal(SIGXFSZ, SIG_IGN);  // nor does a file that may not grow: the write says so
   try {
     const int exit_code = merlin::cli::Main(argc, argv);
     if (std::fflush(stdout) != 0) throw merlin::MachineError("standard output cannot be written");
@@ -68,8 +69,14 @@ int main(int argc, char** argv) {
   } catch (const merlin::MachineError& error) {
     std::fprintf(stderr, "merlin: %s\n", error.what());
     return merlin::cli::kCannot;
+  } catch (const merlin::DeviceError& error) {
+    std::fprintf(stderr, "merlin: %s\n", error.what());
+    return merlin::cli::kFail;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "merlin: internal error: %s\n", error.what());
+    return merlin::cli::kOurFault;
+  } catch (...) {
+    std::fprintf(stderr, "merlin: internal error\n");
     return merlin::cli::kOurFault;
   }
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -148,6 +149,8 @@ int Run(const RunArguments& arguments) {
   } else {
     PrintSummary(report, options.out);
   }
+  std::fflush(stdout);  // what was told so far comes before the error
+  if (report.error) std::rethrow_exception(report.error);
   return report.result.verdict == Verdict::kPass ? kPass : report.result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
 }
 

@@ -90,7 +90,7 @@ std::vector<std::string> Wrap(std::string_view text, int columns) {
 ProgressLine::ProgressLine() : on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
-  if (on_terminal_) fmt::print(stderr, "\r\033[K");
+  if (on_terminal_) std::fputs("\r\033[K", stderr);  // a terminal may be gone: nothing may be thrown here
 }
 
 void ProgressLine::Show(std::string_view text) {
@@ -103,7 +103,7 @@ void ProgressLine::Show(std::string_view text) {
 }
 
 void ProgressLine::Keep() {
-  if (on_terminal_) fmt::print(stderr, "\n");
+  if (on_terminal_) std::fputs("\n", stderr);
 }
 
 }  // namespace merlin::cli

@@ -35,7 +35,10 @@ void ConnectionServer::Accept() {
     }
     Connection& connection = connections_.emplace_back(socket);
     connection.thread = std::thread([this, &connection] {
-      serve_(connection.socket);
+      try {
+        serve_(connection.socket);
+      } catch (...) {  // of one connection: it ends, and the other end notices
+      }
       ::shutdown(connection.socket, SHUT_RDWR);  // the other end learns it now; Forget frees the number
       connection.over = true;
     });

@@ -80,9 +80,14 @@ void EmulatedRobot::Stop() {
 }
 
 void EmulatedRobot::Run() {
-  while (!stop_) {
-    StepTo(clock_.Now());
-    std::this_thread::sleep_for(kNap);
+  try {
+    while (!stop_) {
+      StepTo(clock_.Now());
+      std::this_thread::sleep_for(kNap);
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
   }
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -50,6 +51,11 @@ class EmulatedRobot {
     const std::lock_guard lock(mutex_);
     return use(twin_);
   }
+  // What stepping the world threw; null: nothing. The world stands still from then on.
+  std::exception_ptr failure() const {
+    const std::lock_guard lock(mutex_);
+    return failure_;
+  }
   // The farthest the world has fallen behind the clock: this machine was too slow.
   Duration lag() const { return Duration(lag_.load()); }
 
@@ -73,6 +79,7 @@ class EmulatedRobot {
   std::string depth_socket_;
   DepthServer depth_;
   std::optional<MjpegServer> color_;
+  std::exception_ptr failure_;
   bool caught_up_ = false;  // the thread's
   std::atomic<std::int64_t> lag_{0};
   std::atomic<bool> stop_{false};

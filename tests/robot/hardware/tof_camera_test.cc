@@ -284,6 +284,23 @@ TEST(TofCamera, SaysWhyTheCameraDoesNotOpen) {
   EXPECT_NE(ErrorOf(Config("")).find("has 1 to 107 bytes, got 0"), std::string::npos);
 }
 
+TEST(TofCamera, IsSilentAndTellsWhyWhereTheLibraryThrows) {
+  TofCameraConfig config = Config("");
+  config.pmd.library = THROWING_PMD_LIBRARY;
+  HandClock clock;
+  ASSERT_EQ(::setenv("MERLIN_THROWING_PMD", "8x6x2", 1), 0);
+  TofCamera camera(config, Info(), {}, clock);
+  int frames = 0;
+  EXPECT_TRUE(Until([&] { return (frames += camera.Poll().has_value()) == 2 && !camera.Complaint().empty(); }));
+  EXPECT_EQ(camera.Complaint(), std::string(THROWING_PMD_LIBRARY) + ": the library threw: the lamp has burnt out");
+  EXPECT_TRUE(Until([&] {
+    clock.WaitUntil(clock.Now() + std::chrono::seconds(2));
+    return camera.Status().health == Health::kSilent;
+  }));
+  ASSERT_EQ(::setenv("MERLIN_THROWING_PMD", "8x6x1000", 1), 0);  // repaired
+  EXPECT_TRUE(Until([&] { return camera.Poll() && camera.Complaint().empty(); }));
+}
+
 TEST(TofCamera, RefusesACameraThatIsNotTheSheets) {
   Emulation emulation;
   DepthCameraInfo info = Info();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace merlin {
 namespace {
@@ -41,25 +42,110 @@ TEST(CountLaps, CountsWithAStartBesideACorner) {
   EXPECT_EQ(CountLaps(Along({kA, kD, kC, kB, kA, kD, kC, kB, kA}), kOutline), 2);
 }
 
-TEST(CountLaps, WantsTheWayBackToTheStart) {
+TEST(CountLaps, WantsTheStartingLineCrossedAgain) {
   EXPECT_EQ(CountLaps(Along({kStart, kB, kC, kD, kA}), kOutline), 0);
-  EXPECT_EQ(CountLaps(Along({kStart, kB, kC, kD, kA, {-1.01, -7}}), kOutline), 0);
-  EXPECT_EQ(CountLaps(Along({kStart, kB, kC, kD, kA, {-0.99, -7}}), kOutline), 1);
+  EXPECT_EQ(CountLaps(Along({kStart, kB, kC, kD, kA, {-0.01, -7}}), kOutline), 0);
+  EXPECT_EQ(CountLaps(Along({kStart, kB, kC, kD, kA, {0.01, -7}}), kOutline), 1);
 }
 
-TEST(CountLaps, DoesNotCountWhenACornerIsLeftOut) {
-  EXPECT_EQ(CountLaps(Along({kStart, kB, kD, kA, kStart}), kOutline), 0);  // across, past no third corner
-  EXPECT_EQ(CountLaps(Along({kStart, kB, {9, 5}, {-9, 5.4}, kA, kStart}), kOutline),
-            0);  // two corners cut by more than 2.5 m
+TEST(CountLaps, CountsAroundTheCentreOnly) {
+  EXPECT_EQ(CountLaps(Along({kStart, kB, {9, 1}, {-9, 1}, kA, kStart}), kOutline), 1);    // half the room, and the centre
+  EXPECT_EQ(CountLaps(Along({kStart, kB, {9, -1}, {-9, -1}, kA, kStart}), kOutline), 0);  // half the room without it
 }
 
-TEST(CountLaps, CountsACornerWithinItsReachOnly) {
-  // The corner (10, -8) passed diagonally below it: at 2.4 m, then at 2.6 m.
-  for (const auto& [reach_m, laps] : {std::pair(2.4, 1), std::pair(2.6, 0)}) {
-    const double cut = reach_m * std::sqrt(2.0);
-    EXPECT_EQ(CountLaps(Along({kStart, {10 - cut, -8}, {10, -8 + cut}, kC, kD, kA, kStart}), kOutline), laps)
-        << reach_m;
+// Rectangle of these half sizes, from its lower middle, counter-clockwise.
+std::vector<Eigen::Vector2d> Rectangle(double half_x_m, double half_y_m) {
+  return {{0, -half_y_m},        {half_x_m, -half_y_m}, {half_x_m, half_y_m},
+          {-half_x_m, half_y_m}, {-half_x_m, -half_y_m}, {0, -half_y_m}};
+}
+
+TEST(CountLaps, CountsInEveryLaneOfACorridorOfAnyWidth) {
+  // 0.8, 2 and 5 m wide: in its middle, and 0.2 m from either wall. The start's lane is not the end's.
+  for (const double width_m : {0.8, 2.0, 5.0})
+    for (const double from_wall_m : {0.2, 0.5 * width_m, width_m - 0.2}) {
+      auto points = Rectangle(10 - from_wall_m, 8 - from_wall_m);
+      EXPECT_EQ(CountLaps(Along(points), kOutline), 1) << width_m << " " << from_wall_m;
+      points.back().x() -= 0.05;
+      EXPECT_EQ(CountLaps(Along(points), kOutline), 0) << width_m << " " << from_wall_m;
+      points.back() = {0.05, -8 + 0.5 * width_m};
+      EXPECT_EQ(CountLaps(Along(points), kOutline), 1) << width_m << " " << from_wall_m;
+    }
+}
+
+TEST(CountLaps, CountsWhereTheLineStandsAcrossTheCorridorNotWhereItPointsAtTheCentre) {
+  // From the middle of a 2 m corridor, 6 m beside the room's middle; the end in lanes 0.5 m to either side.
+  for (const double lane_m : {-7.5, -6.5})
+    for (const auto& [x, laps] : {std::pair(5.95, 0), std::pair(6.05, 1)})
+      EXPECT_EQ(CountLaps(Along({{6, -7}, kB, kC, kD, {-9, lane_m}, {x, lane_m}}), kOutline), laps) << lane_m;
+}
+
+TEST(CountLaps, CountsCirclesByTheWholeTurn) {
+  Trajectory path;
+  for (int i = 0; i <= 80; ++i) {  // ten turns of a circle around the centre, eight points a turn
+    const double angle_rad = 1.0 + i * M_PI / 4.0;
+    path.push_back({Time(i), FromXyYaw(5 * std::cos(angle_rad), 5 * std::sin(angle_rad), 0)});
+    EXPECT_EQ(CountLaps(path, kOutline), i / 8) << i;
   }
+}
+
+TEST(CountLaps, DoesNotCountJitterOnTheLine) {
+  std::vector<Eigen::Vector2d> points{kStart};
+  const auto jitter = [&points] {
+    for (int i = 0; i < 20; ++i) points.emplace_back(i % 2 == 0 ? 0.03 : -0.03, -7);
+  };
+  jitter();
+  EXPECT_EQ(CountLaps(Along(points), kOutline), 0);
+  points.insert(points.end(), {kB, kC, kD, kA});
+  jitter();
+  EXPECT_EQ(CountLaps(Along(points), kOutline), 1);
+  points.insert(points.end(), {kB, kC, kD, kA});
+  jitter();
+  EXPECT_EQ(CountLaps(Along(points), kOutline), 2);
+}
+
+TEST(CountLaps, TakesBackWhatIsDrivenBack) {
+  EXPECT_EQ(CountLaps(Along({kStart, {-2, -7}, kB, kC, kD, kA, {-0.1, -7}}), kOutline), 0);  // 2 m back at first
+  EXPECT_EQ(CountLaps(Along({kStart, {-2, -7}, kB, kC, kD, kA, {0.1, -7}}), kOutline), 1);
+  EXPECT_EQ(CountLaps(Along({kStart, kB, kC, kD, kC, kD, kA, kD, kA, {0.1, -7}}), kOutline), 1);
+  EXPECT_EQ(CountLaps(Along({kStart, kB, kC, kD, kA, {2, -7}, {-2, -7}, {2, -7}}), kOutline), 1);
+}
+
+TEST(CountLaps, CountsAFigureOfEightByItsLoopAroundTheCentre) {
+  const Eigen::Vector2d left(-2, -7), crossing(-4, -2);  // one loop around the centre, one around a place beside it
+  const std::vector<Eigen::Vector2d> around{kStart, kB, kC, {-4, 7}, crossing};
+  std::vector<Eigen::Vector2d> eight = around;
+  eight.insert(eight.end(), {{-4, -4}, {-8, -4}, {-8, -3}, crossing, left, kStart});
+  EXPECT_EQ(CountLaps(Along(eight), kOutline), 1);
+  // Both loops beside the centre, or the crossing on it: nothing is wound around.
+  EXPECT_EQ(CountLaps(Along({{-5, -3}, {-5, 3}, {5, -3}, {5, 3}, {-5, -3}}), kOutline), 0);
+  EXPECT_EQ(CountLaps(Along({{-5, -3}, {-5, 3}, {-1, 0}, {-1, -3}, {-5, -3}}), kOutline), 0);
+}
+
+TEST(CountLaps, StartsAnewWhereThePathRunsOverTheCentre) {
+  // There and back over it, to its left there and to its right back; then half round: no whole turn.
+  for (const double beside_m : {0.0, 0.05, -0.05})
+    EXPECT_EQ(CountLaps(Along({kStart, {beside_m, 0}, {0, 7}, {-beside_m, 0}, kStart, {0, -7.5}}), kOutline), 0);
+  EXPECT_EQ(CountLaps(Along({kStart, {0, 7}, kD, kA, {1, -7}}), kOutline), 0);
+  EXPECT_EQ(CountLaps(Along({kStart, {0, 7}, kC, kB, {-1, -7}}), kOutline), 0);
+  EXPECT_EQ(CountLaps(Along({kStart, {0, 7}, kD, kA, kB, kC, kD, kA, {1, -7}}), kOutline), 1);
+  EXPECT_EQ(CountLaps(Along({{0, 0}, {3, 0}, {0, 3}, {-3, 0}, {0, -3}, {3, 0}, {0, 3}, {-3, 0}, {0, -3}}), kOutline), 1)
+      << "a start on the centre";
+}
+
+TEST(CountLaps, AsksTheCentreOfTheAreaWhereverTheRoomLies) {
+  // A trapezium far from the origin, its corners clockwise and one of them twice: the mean of its corners lies beside it.
+  const Outline room{{1000, 500}, {1000, 500}, {1000, 510}, {1004, 510}, {1030, 500}};
+  // Its centre by hand: a square part of 4 x 10 m and a triangle of 26 x 10 m.
+  const Eigen::Vector2d centre((40 * 1002.0 + 130 * (1004 + 26 / 3.0)) / 170, (40 * 505.0 + 130 * (500 + 10 / 3.0)) / 170);
+  const auto around = [](const Eigen::Vector2d& c, double size_m) {
+    std::vector<Eigen::Vector2d> points;
+    for (const auto& [x, y] : {std::pair(0, -1), {1, -1}, {1, 1}, {-1, 1}, {-1, -1}, {0, -1}})
+      points.emplace_back(c + size_m * Eigen::Vector2d(x, y));
+    return points;
+  };
+  EXPECT_EQ(CountLaps(Along(around(centre, 0.3)), room), 1);
+  for (const auto& [x, y] : {std::pair(0.5, 0.0), {-0.5, 0.0}, {0.0, 0.5}, {0.0, -0.5}})
+    EXPECT_EQ(CountLaps(Along(around(centre + Eigen::Vector2d(x, y), 0.3)), room), 0) << x << " " << y;
 }
 
 TEST(CountLaps, DoesNotCountGoingThereAndBack) {

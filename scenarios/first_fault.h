@@ -1,0 +1,29 @@
+// Does one thing after the other, whatever fails, and keeps the first failure: for the end of a run, where the car must
+// stand and as many files as possible must be written.
+#pragma once
+
+#include <exception>
+
+namespace merlin {
+
+class FirstFault {
+ public:
+  // Calls action. False: it threw; what it threw, of whatever type, is kept if it is the first.
+  template <class Action>
+  bool Try(const Action& action) {
+    try {
+      action();
+      return true;
+    } catch (...) {
+      if (!fault_) fault_ = std::current_exception();
+      return false;
+    }
+  }
+  // Null: nothing failed.
+  const std::exception_ptr& get() const { return fault_; }
+
+ private:
+  std::exception_ptr fault_;
+};
+
+}  // namespace merlin
