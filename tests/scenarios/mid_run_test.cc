@@ -18,7 +18,7 @@
 namespace merlin {
 namespace {
 
-std::atomic<bool> never{false};
+std::atomic<bool> never_stop{false};
 
 constexpr char kCorridor[] = R"(<geom name="floor" type="plane" size="0 0 1"/>
   <geom type="box" size="20 .1 1" pos="0 1.1 1"/> <geom type="box" size="20 .1 1" pos="0 -1.1 1"/>)";
@@ -102,7 +102,7 @@ class BrokenRun : public ::testing::Test {
     };
     std::string thrown;
     try {
-      loop.Run(never, {.depth = [&](const DepthFrame&) { observe(); }, .color = {}, .tick = {}}, hand);
+      loop.Run(never_stop, {.depth = [&](const DepthFrame&) { observe(); }, .color = {}, .tick = {}}, hand);
     } catch (const DeviceError& error) {
       thrown = std::string("device: ") + error.what();
     } catch (const MachineError& error) {
@@ -198,7 +198,7 @@ constexpr char kRunaway[] = R"(<body pos="0 0 50">
 TEST(BadState, EndsTheRunAsOurOwnFaultWithEveryFile) {
   const TemporaryFolder folder;
   const sim::TemporaryFile room("room.xml", sim::Room(std::string(kCorridor) + kRunaway));
-  const RunReport report = RunScenario(OptionsFor(room.path(), folder.path() / "a", 10), never);
+  const RunReport report = RunScenario(OptionsFor(room.path(), folder.path() / "a", 10), never_stop);
   EXPECT_EQ(report.result.verdict, Verdict::kFail);
   EXPECT_TRUE(What(report.error).starts_with("ours: MuJoCo stopped at ")) << What(report.error);
   EXPECT_TRUE(report.result.fault.starts_with("MuJoCo stopped at ")) << report.result.fault;
@@ -240,7 +240,7 @@ TEST(FullDisk, LosesTheFilesThatDoNotFitAndNothingElse) {
   RunReport report;
   {
     const FileSizeLimit limit(16'000);
-    report = RunScenario(options, never);
+    report = RunScenario(options, never_stop);
   }
   const std::string reason = (out / "map.ply").string() + ": cannot be written: File too large";
   EXPECT_EQ(What(report.error), "machine: " + reason);
@@ -265,7 +265,7 @@ TEST(Progress, DoesNotStopTheCarWhereNobodyReadsIt) {
     ++calls;
     throw std::runtime_error("cannot write to file");
   };
-  const RunReport report = RunScenario(options, never);
+  const RunReport report = RunScenario(options, never_stop);
   EXPECT_GT(calls, 0);
   EXPECT_EQ(report.result.verdict, Verdict::kPass) << report.result.fault;
 }
@@ -280,7 +280,7 @@ TEST(LostCar, FailsTheRunWithTheReason) {
   options.hand = [](Time now) {
     return ManualWish{.heard = now, .held = true, .speed_m_s = 0.8, .override_stop = true};
   };
-  const RunReport report = RunScenario(options, never);
+  const RunReport report = RunScenario(options, never_stop);
   EXPECT_EQ(report.result.verdict, Verdict::kFail);
   EXPECT_FALSE(report.error);
   EXPECT_NE(report.result.fault.find("s the car left the room: it was at x 2.00 m, y "), std::string::npos)

@@ -55,7 +55,7 @@ std::unique_ptr<Scene> FromText(const std::string& body) {
   return scene;
 }
 
-std::unique_ptr<Scene> Room(const std::string& name) {
+std::unique_ptr<Scene> RoomScene(const std::string& name) {
   char error[500] = "";
   const std::string file = std::string(MERLIN_SOURCE_DIR "/models/rooms/") + name + ".xml";
   return std::make_unique<Scene>(mj_loadXML(file.c_str(), nullptr, error, sizeof(error)));
@@ -135,7 +135,7 @@ TEST(RendererBackEnds, EglAndOsmesaGiveTheSameBytes) {
     if (child == 0) {
       int code = 1;
       try {
-        const auto room = Room("corridor_26x21");
+        const auto room = RoomScene("corridor_26x21");
         Renderer renderer(room->model, kCcd, back_ends[i]);
         const Picture bgr = Draw(renderer, *room, LevelCamera({0.2, -9.5, 0.41}, 0.0), kCcd);
         std::memcpy(shared + i * size, bgr.data(), size);
@@ -223,7 +223,7 @@ TEST_F(RendererTest, DrawsOnlyVisibleGroupsInFrontOfTheNearPlane) {
 }
 
 TEST_F(RendererTest, GivesTheSameBytesAgainAndFromAnotherThread) {
-  const auto room = Room("hall");
+  const auto room = RoomScene("hall");
   const Pose T_world_camera = LevelCamera({-1.0, 0.0, 0.41}, 0.3);
   Renderer renderer(room->model, kCcd, Gl::kAuto);
   const Picture first = Draw(renderer, *room, T_world_camera, kCcd);
@@ -240,7 +240,7 @@ TEST_F(RendererTest, GivesTheSameBytesAgainAndFromAnotherThread) {
 }
 
 TEST_F(RendererTest, LeavesOutNothingThatCouldBeSeen) {
-  const auto room = Room("corridor_26x21");
+  const auto room = RoomScene("corridor_26x21");
   Renderer renderer(room->model, kCcd, Gl::kAuto);
   RenderSnapshot snapshot(room->model);
   for (const Pose& T_world_camera : {LevelCamera({0.2, -9.5, 0.41}, 0.0), LevelCamera({11.9, -9.2, 0.41}, 0.9),

@@ -19,7 +19,7 @@ install_oracles() {
   rm -rf "$oracles"
   {
     python3 -m venv "$oracles" &&
-      "$oracles/bin/python" -m pip install --quiet --disable-pip-version-check --retries 2 --no-cache-dir --no-compile \
+      "$oracles/bin/python" -m pip install --quiet --disable-pip-version-check --retries 2 --no-cache-dir \
         --no-deps --only-binary=:all: --require-hashes -r "$oracle_list"
   } >"$log" 2>&1 </dev/null ||
     stop 3 "set-up stopped at the tests' oracles: $(oracle_reason "$log"); no network? MERLIN_ORACLES may name an environment that has them"
