@@ -152,7 +152,7 @@ class MeshFiles {
   // Takes the signs out of the shape's scale. Empty once there are faults: no car comes of them.
   const Parts& Of(CarShape& shape) {
     static const Parts kNone;
-    if (faults_.count() > 0) return kNone;
+    if (!faults_.empty()) return kNone;
     const Eigen::Vector3d signs = (shape.size_m.array() < 0.0).select(-1.0, Eigen::Vector3d::Ones());
     shape.size_m = shape.size_m.cwiseAbs();
     const auto [entry, is_new] = parts_.try_emplace(Key{shape.mesh_file, signs.x(), signs.y(), signs.z()});
@@ -233,7 +233,7 @@ urdf::ModelInterfaceSharedPtr ParseUnless(const UrdfFaults& faults, const UrdfSo
   try {
     return ParseUrdf(source);
   } catch (const InputError&) {
-    if (faults.list.count() == 0) throw;
+    if (faults.list.empty()) throw;
     return nullptr;
   }
 }

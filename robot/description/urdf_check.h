@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "robot/description/fault_list.h"
+#include "robot/types/fault_list.h"
 #include "robot/description/urdf_source.h"
 
 namespace merlin {

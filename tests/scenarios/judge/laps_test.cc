@@ -54,7 +54,7 @@ TEST(CountLaps, CountsAroundTheCentreOnly) {
 }
 
 // Rectangle of these half sizes, from its lower middle, counter-clockwise.
-std::vector<Eigen::Vector2d> Rectangle(double half_x_m, double half_y_m) {
+std::vector<Eigen::Vector2d> HalfRectangle(double half_x_m, double half_y_m) {
   return {{0, -half_y_m},        {half_x_m, -half_y_m}, {half_x_m, half_y_m},
           {-half_x_m, half_y_m}, {-half_x_m, -half_y_m}, {0, -half_y_m}};
 }
@@ -63,7 +63,7 @@ TEST(CountLaps, CountsInEveryLaneOfACorridorOfAnyWidth) {
   // 0.8, 2 and 5 m wide: in its middle, and 0.2 m from either wall. The start's lane is not the end's.
   for (const double width_m : {0.8, 2.0, 5.0})
     for (const double from_wall_m : {0.2, 0.5 * width_m, width_m - 0.2}) {
-      auto points = Rectangle(10 - from_wall_m, 8 - from_wall_m);
+      auto points = HalfRectangle(10 - from_wall_m, 8 - from_wall_m);
       EXPECT_EQ(CountLaps(Along(points), kOutline), 1) << width_m << " " << from_wall_m;
       points.back().x() -= 0.05;
       EXPECT_EQ(CountLaps(Along(points), kOutline), 0) << width_m << " " << from_wall_m;
