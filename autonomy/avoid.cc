@@ -5,7 +5,8 @@
 
 namespace merlin {
 
-std::optional<double> Avoid::SeenNow_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base) const {
+std::optional<double> Avoid::SeenNow_m(const Observation& observation,
+                                       std::span<const Eigen::Vector2d> path_base) const {
   const auto ahead = [this](const Eigen::Vector3f& d) {
     return std::abs(std::atan2(d.y(), d.x())) < config_.saturated_half_angle_rad;
   };
@@ -14,7 +15,8 @@ std::optional<double> Avoid::SeenNow_m(const Observation& observation, std::span
   std::vector<double> in_the_way_m;
   for (const Point& point : observation.points_base) {
     if (point.position.z() < config_.height_min_m || point.position.z() > config_.height_max_m) continue;
-    if (const auto way_m = WayUntilTouch_m(point.position.head<2>().cast<double>(), path_base)) in_the_way_m.push_back(*way_m);
+    if (const auto way_m = WayUntilTouch_m(point.position.head<2>().cast<double>(), path_base))
+      in_the_way_m.push_back(*way_m);
   }
   if (static_cast<int>(in_the_way_m.size()) < config_.points_min) return std::nullopt;
   const auto nth = in_the_way_m.begin() + (config_.points_min - 1);
@@ -22,7 +24,8 @@ std::optional<double> Avoid::SeenNow_m(const Observation& observation, std::span
   return *nth;
 }
 
-std::optional<double> Avoid::WayUntilTouch_m(const Eigen::Vector2d& point_base, std::span<const Eigen::Vector2d> path_base) const {
+std::optional<double> Avoid::WayUntilTouch_m(const Eigen::Vector2d& point_base,
+                                             std::span<const Eigen::Vector2d> path_base) const {
   const double half_width_m = footprint_.half_width_m + config_.margin_m;
   double way_m = 0.0;
   for (std::size_t i = 0; i + 1 < path_base.size(); ++i) {

@@ -13,16 +13,16 @@
 namespace merlin {
 
 struct AvoidConfig {
-  double margin_m = 0.08;             // [0, 2] kept free on either side of the car
-  double height_min_m = 0.08;         // [0, 2] lower points are floor
-  double height_max_m = 0.6;          // [0, 5] higher ones pass over the mast; guess
-  int points_min = 4;                 // [1, 1000] fewer points in the way are noise; guess
-  double stop_gap_m = 0.5;            // [0.05, 5] the car stands with at least this free before its front
-  double deceleration_m_s2 = 0.5;     // [0.05, 5] braking it plans with; the car can do 2
-  double hold_s = 0.5;                // [0, 10] an obstacle that drops out of sight is believed this long
-  int saturated_min = 30;             // [1, 1e5] saturated pixels straight ahead that mean: something close
+  double margin_m = 0.08;                  // [0, 2] kept free on either side of the car
+  double height_min_m = 0.08;              // [0, 2] lower points are floor
+  double height_max_m = 0.6;               // [0, 5] higher ones pass over the mast; guess
+  int points_min = 4;                      // [1, 1000] fewer points in the way are noise; guess
+  double stop_gap_m = 0.5;                 // [0.05, 5] the car stands with at least this free before its front
+  double deceleration_m_s2 = 0.5;          // [0.05, 5] braking it plans with; the car can do 2
+  double hold_s = 0.5;                     // [0, 10] an obstacle that drops out of sight is believed this long
+  int saturated_min = 30;                  // [1, 1e5] saturated pixels straight ahead that mean: something close
   double saturated_half_angle_rad = 0.15;  // [0, 1.6] straight ahead
-  double aside_max_rad = 0.2;         // [0, 1.6] a camera turned farther to a side does not see the way; half its view
+  double aside_max_rad = 0.2;  // [0, 1.6] a camera turned farther to a side does not see the way; half its view
 };
 
 template <class Visitor>
@@ -44,8 +44,8 @@ class Avoid {
   Avoid(const Footprint& footprint, const AvoidConfig& config) : footprint_(footprint), config_(config) {}
 
   // Way the car can drive along the path (points of its base_link to be, in the base frame, in order, from the origin
-  // on) until its footprint, turned along the path, touches something. Nothing: no obstacle seen on it. Zero: something is too close
-  // to measure, or the camera looks aside.
+  // on) until its footprint, turned along the path, touches something. Nothing: no obstacle seen on it. Zero: something
+  // is too close to measure, or the camera looks aside.
   std::optional<double> FreeWay_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base);
 
   // The fastest speed from which the car, braking as planned, still stands stop_gap_m before the obstacle.
@@ -53,7 +53,8 @@ class Avoid {
 
  private:
   std::optional<double> SeenNow_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base) const;
-  std::optional<double> WayUntilTouch_m(const Eigen::Vector2d& point_base, std::span<const Eigen::Vector2d> path_base) const;
+  std::optional<double> WayUntilTouch_m(const Eigen::Vector2d& point_base,
+                                        std::span<const Eigen::Vector2d> path_base) const;
 
   Footprint footprint_;
   AvoidConfig config_;

@@ -23,7 +23,8 @@ std::vector<WallPoint> WallPoints(const VoxelMap& map, const Pose& T_map_axis, c
     if (!voxel.has_normal() || std::abs(voxel.normal.z()) > 0.3f) continue;
     if (voxel.mean.z() < config.height_min_m || voxel.mean.z() > config.height_max_m) continue;
     const Eigen::Vector3d p = T_axis_map * voxel.mean.cast<double>();
-    if (p.x() < -config.look_behind_m || p.x() > 2.0 * config.look_ahead_m || std::abs(p.y()) > 2.0 * config.side_max_m) continue;
+    if (p.x() < -config.look_behind_m || p.x() > 2.0 * config.look_ahead_m || std::abs(p.y()) > 2.0 * config.side_max_m)
+      continue;
     const Eigen::Vector3d n = T_axis_map.linear() * voxel.normal.cast<double>();
     points.push_back({p.head<2>(), n.head<2>().normalized()});
   }
@@ -38,8 +39,8 @@ double AxisYaw(const std::vector<WallPoint>& points, double hint_rad) {
   return WrapPi(hint_rad + std::arg(sum) / 4.0);  // normals are in the hint's frame: arg / 4 is within 45 deg of it
 }
 
-// Distance of the wall on one side (+1 left, -1 right): of the bins at least half as full as the fullest the farthest, since
-// pillars, cabinets and radiators stand before a wall.
+// Distance of the wall on one side (+1 left, -1 right): of the bins at least half as full as the fullest the farthest,
+// since pillars, cabinets and radiators stand before a wall.
 std::optional<double> SideWall(const std::vector<WallPoint>& points, double side, const CorridorConfig& config) {
   std::vector<int> bins(static_cast<std::size_t>(config.side_max_m / kBin_m) + 2, 0);
   for (const WallPoint& point : points) {

@@ -12,15 +12,15 @@
 namespace merlin {
 
 struct CorridorConfig {
-  double look_behind_m = 2.0;      // [0, 20] walls are taken from this far behind the car...
-  double look_ahead_m = 5.0;       // [0.5, 20] ...to this far ahead
-  double side_max_m = 2.5;         // [0.3, 10] a wall farther to the side is not this corridor's
-  double height_min_m = 0.12;      // [0, 3] of wall points
-  double height_max_m = 1.5;       // [0, 5]
-  double side_distance_m = 1.0;    // [0.2, 5] kept from the only wall in sight, until a width is known
-  int wall_voxels_min = 80;        // [1, 1e5] a wall has at least so many: most of a metre of it; fewer may be a pillar
-  double front_half_width_m = 0.6; // [0.1, 5] an end wall covers this much to both sides of the middle
-  double opening_m = 0.35;         // [0.05, 5] a side is open if it is free this far beyond the wall's line
+  double look_behind_m = 2.0;    // [0, 20] walls are taken from this far behind the car...
+  double look_ahead_m = 5.0;     // [0.5, 20] ...to this far ahead
+  double side_max_m = 2.5;       // [0.3, 10] a wall farther to the side is not this corridor's
+  double height_min_m = 0.12;    // [0, 3] of wall points
+  double height_max_m = 1.5;     // [0, 5]
+  double side_distance_m = 1.0;  // [0.2, 5] kept from the only wall in sight, until a width is known
+  int wall_voxels_min = 80;      // [1, 1e5] a wall has at least so many: most of a metre of it; fewer may be a pillar
+  double front_half_width_m = 0.6;  // [0.1, 5] an end wall covers this much to both sides of the middle
+  double opening_m = 0.35;          // [0.05, 5] a side is open if it is free this far beyond the wall's line
 };
 
 template <class Visitor>
@@ -37,19 +37,19 @@ void Visit(Visitor& v, CorridorConfig& c) {
 }
 
 struct CorridorHint {
-  double yaw_rad = 0.0;             // of the axis, map frame
-  std::optional<double> width_m;    // as last seen whole
+  double yaw_rad = 0.0;           // of the axis, map frame
+  std::optional<double> width_m;  // as last seen whole
 };
 
 // Lengths in the axis frame: origin at the car, x along the axis, y to its left.
 struct Corridor {
-  double yaw_rad = 0.0;              // of the axis, map frame
-  std::optional<double> left_m;      // y of the left wall, positive
-  std::optional<double> right_m;     // y of the right wall, negative
-  double middle_m = 0.0;             // y of the middle line
-  std::optional<double> width_m;     // seen now, or the hint's
-  std::optional<double> front_m;     // x of the wall that ends it
-  bool left_open = false;            // before the end wall, a way leads off to this side; known only with front_m
+  double yaw_rad = 0.0;           // of the axis, map frame
+  std::optional<double> left_m;   // y of the left wall, positive
+  std::optional<double> right_m;  // y of the right wall, negative
+  double middle_m = 0.0;          // y of the middle line
+  std::optional<double> width_m;  // seen now, or the hint's
+  std::optional<double> front_m;  // x of the wall that ends it
+  bool left_open = false;         // before the end wall, a way leads off to this side; known only with front_m
   bool right_open = false;
 
   Pose T_map_axis(const Pose& T_map_base) const {

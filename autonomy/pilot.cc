@@ -62,10 +62,13 @@ void Pilot::FollowCorridor(const Pose& T_map_base, const Slam& slam) {
   hint_ = {corridor.yaw_rad, corridor.width_m};
   const Pose T_map_axis = corridor.T_map_axis(T_map_base);
   path_map_.clear();
-  AddStraight(path_map_, (T_map_axis * Eigen::Vector3d(0.0, corridor.middle_m, 0.0)).head<2>(), corridor.yaw_rad, kStraight_m);
+  AddStraight(path_map_, (T_map_axis * Eigen::Vector3d(0.0, corridor.middle_m, 0.0)).head<2>(), corridor.yaw_rad,
+              kStraight_m);
   if (corridor.front_m && *corridor.front_m < config_.decide_m) {
-    if (corridor.left_open) PlanTurn(corridor, T_map_base, 1.0);
-    else if (corridor.right_open) PlanTurn(corridor, T_map_base, -1.0);
+    if (corridor.left_open)
+      PlanTurn(corridor, T_map_base, 1.0);
+    else if (corridor.right_open)
+      PlanTurn(corridor, T_map_base, -1.0);
   }
 }
 
@@ -92,9 +95,8 @@ bool Pilot::TurnIsOver(const Pose& T_map_base) const {
 
 Pilot::Pursuit Pilot::Pursue(const std::vector<Eigen::Vector2d>& path_base) const {
   // Pure pursuit (Coulter 1992): the arc through the first path point a look-ahead away.
-  auto far = std::ranges::find_if(path_base, [this](const Eigen::Vector2d& p) {
-    return p.x() > 0.0 && p.norm() >= config_.look_ahead_m;
-  });
+  auto far = std::ranges::find_if(
+      path_base, [this](const Eigen::Vector2d& p) { return p.x() > 0.0 && p.norm() >= config_.look_ahead_m; });
   if (far == path_base.end()) far = std::prev(path_base.end());
   const double curvature_1_m = 2.0 * far->y() / std::max(far->squaredNorm(), 0.04);
   Pursuit pursuit;
@@ -130,7 +132,8 @@ Decision Pilot::Decide(const Observation& observation, const std::optional<Pose>
   if (IsOnStand(task_)) return TurnOnStand(observation);
   CountLaps(*T_map_base);
   if (task_.laps > 0 && laps_ >= task_.laps) return {Command(0.0, 0.0), true, "is done"};
-  if (slam.lost_frames() > config_.lost_frames_max) return {Command(0.0, 0.0), false, "stands: it does not know where it is"};
+  if (slam.lost_frames() > config_.lost_frames_max)
+    return {Command(0.0, 0.0), false, "stands: it does not know where it is"};
 
   if (turn_side_ && TurnIsOver(*T_map_base)) turn_side_.reset();
   if (!turn_side_) FollowCorridor(*T_map_base, slam);

@@ -17,14 +17,15 @@
 namespace merlin {
 
 struct PilotConfig {
-  double speed_m_s = 0.5;            // [0.05, 2] along a corridor; the thesis' indoor mapping speed
-  double turn_speed_m_s = 0.4;       // [0.05, 2] around a corner
-  double look_ahead_m = 0.9;         // [0.2, 5] of pure pursuit; longer is smoother, shorter truer
-  double turn_radius_m = 0.9;        // [0.3, 5] of the arc around a corner; the car's smallest is 0.71
-  double decide_m = 2.6;             // [0.5, 7] distance to the end wall at which it decides where to turn
-  double lap_overlap_m = 0.7;        // [0, 5] a lap ends this far beyond the line where it began: what was seen at first is seen again
-  double command_valid_s = 0.3;      // [0.02, 5] the car brakes by itself when no command follows
-  int lost_frames_max = 20;          // [1, 1000] frames in a row without registration, then it stands until one fits
+  double speed_m_s = 0.5;       // [0.05, 2] along a corridor; the thesis' indoor mapping speed
+  double turn_speed_m_s = 0.4;  // [0.05, 2] around a corner
+  double look_ahead_m = 0.9;    // [0.2, 5] of pure pursuit; longer is smoother, shorter truer
+  double turn_radius_m = 0.9;   // [0.3, 5] of the arc around a corner; the car's smallest is 0.71
+  double decide_m = 2.6;        // [0.5, 7] distance to the end wall at which it decides where to turn
+  double lap_overlap_m =
+      0.7;  // [0, 5] a lap ends this far beyond the line where it began: what was seen at first is seen again
+  double command_valid_s = 0.3;  // [0.02, 5] the car brakes by itself when no command follows
+  int lost_frames_max = 20;      // [1, 1000] frames in a row without registration, then it stands until one fits
   AvoidConfig avoid;
   CorridorConfig corridor;
   EnergyConfig energy;
@@ -73,8 +74,8 @@ std::vector<std::string> BehaviorNames();
 
 struct Decision {
   DriveCommand command;
-  bool done = false;        // the task is finished: the command is to stand
-  std::string doing;        // "follows the corridor", "turns left", "waits for an obstacle", ...
+  bool done = false;                  // the task is finished: the command is to stand
+  std::string doing;                  // "follows the corridor", "turns left", "waits for an obstacle", ...
   std::optional<double> stand_rad{};  // where the stand is to turn, from its start; none: nothing new
 };
 
@@ -107,11 +108,11 @@ class Pilot {
   std::optional<Pose> T_map_start_;
   double last_yaw_rad_ = 0.0, turned_rad_ = 0.0;  // since the start, unwrapped
   int laps_ = 0;
-  std::optional<double> stand_yaw_rad_;           // of the odometry at the last frame
+  std::optional<double> stand_yaw_rad_;  // of the odometry at the last frame
   double stand_turned_rad_ = 0.0;
   CorridorHint hint_;
-  std::vector<Eigen::Vector2d> path_map_;         // what it means to drive, from about the car onwards
-  std::optional<double> turn_side_;               // +1 left, -1 right, while it turns
+  std::vector<Eigen::Vector2d> path_map_;  // what it means to drive, from about the car onwards
+  std::optional<double> turn_side_;        // +1 left, -1 right, while it turns
 };
 
 }  // namespace merlin

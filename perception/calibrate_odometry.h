@@ -36,8 +36,8 @@ void Visit(Visitor& v, CircleDrive& c) {
 }
 
 struct MeasuredDrives {
-  double tape_sigma_m = 0.0015;       // [0.0001, 0.1] of one measured length
-  double steering_sigma_rad = 0.0015; // [0.0001, 0.1] of the wheels' angle for a reported one: play
+  double tape_sigma_m = 0.0015;        // [0.0001, 0.1] of one measured length
+  double steering_sigma_rad = 0.0015;  // [0.0001, 0.1] of the wheels' angle for a reported one: play
   std::vector<StraightDrive> straights;
   std::vector<CircleDrive> circles;
 };
@@ -51,15 +51,15 @@ void Visit(Visitor& v, MeasuredDrives& c) {
 }
 
 struct OdometryCalibration {
-  std::string problem;      // empty: solved; else one sentence, and nothing below holds
+  std::string problem;  // empty: solved; else one sentence, and nothing below holds
   CarCalibration value;
   CarCalibration sigma;     // one standard deviation of each, from the two sigmas above
   double residual_rms = 0;  // in sigmas: about 1 or less where model, tape and sigmas agree
   int iterations = 0;
 };
 
-// Least squares over the drives (Gauss-Newton from the described values). Drives that leave a value open (one side only,
-// no straight one) or contradict each other are a problem, named.
+// Least squares over the drives (Gauss-Newton from the described values). Drives that leave a value open (one side
+// only, no straight one) or contradict each other are a problem, named.
 OdometryCalibration CalibrateOdometry(const CarDescription& described, const MeasuredDrives& drives);
 
 }  // namespace merlin

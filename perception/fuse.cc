@@ -41,7 +41,8 @@ class DepthBuffer {
  private:
   float Cell(float px) const { return (px + 0.5f) / cell_px_; }
   float& At(int column, int row) {
-    return nearest_m_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)];
+    return nearest_m_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                      static_cast<std::size_t>(column)];
   }
 
   float cell_px_, reach_;
@@ -60,8 +61,8 @@ Projected Project(const Point& point, const ColorFrame& frame, const CameraModel
 
 }  // namespace
 
-void ColorPoints(std::span<Point> points_base, const ColorFrame& frame, const CameraModel& camera, const Pose& T_color_base,
-                 double pixel_rad) {
+void ColorPoints(std::span<Point> points_base, const ColorFrame& frame, const CameraModel& camera,
+                 const Pose& T_color_base, double pixel_rad) {
   DepthBuffer buffer(frame, static_cast<float>(camera.fx_px * pixel_rad));
   std::vector<Projected> projected;
   projected.reserve(points_base.size());

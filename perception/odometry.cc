@@ -60,7 +60,8 @@ void Odometry::Update(const DriveState& state) {
 
 // P' = F P F^T + V Q V^T: F of the pose before, V of path and steering angle (Siegwart, Nourbakhsh, Scaramuzza,
 // "Introduction to autonomous mobile robots", eq. 5.9, for a car).
-Eigen::Matrix3d Odometry::Propagate(const Eigen::Matrix3d& P, double yaw_rad, double path_m, double steering_rad) const {
+Eigen::Matrix3d Odometry::Propagate(const Eigen::Matrix3d& P, double yaw_rad, double path_m,
+                                    double steering_rad) const {
   const double curvature_1_m = std::tan(steering_rad) / wheelbase_m_;
   const ArcShape shape = ShapeOf(path_m * curvature_1_m);
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(yaw_rad).toRotationMatrix();
@@ -70,7 +71,8 @@ Eigen::Matrix3d Odometry::Propagate(const Eigen::Matrix3d& P, double yaw_rad, do
 
   Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
   F.topRightCorner<2, 1>() << -step_m.y(), step_m.x();
-  Eigen::Matrix<double, 3, 2> V;  // columns: path; steering angle, over its path: d(turn) = path / (L cos^2) d(steering)
+  Eigen::Matrix<double, 3, 2>
+      V;  // columns: path; steering angle, over its path: d(turn) = path / (L cos^2) d(steering)
   V.col(0) << by_path + by_turn * curvature_1_m, curvature_1_m;
   V.col(1) << by_turn, 1.0;
   V.col(1) /= wheelbase_m_ * std::pow(std::cos(steering_rad), 2);
@@ -82,15 +84,15 @@ Eigen::Matrix3d Odometry::Propagate(const Eigen::Matrix3d& P, double yaw_rad, do
 
 std::optional<Eigen::Matrix3d> Odometry::CovarianceAt(Time time) const {
   if (knots_.empty()) return std::nullopt;
-  const auto after = std::upper_bound(knots_.begin(), knots_.end(), time,
-                                      [](Time t, const Knot& knot) { return t < knot.stamp; });
+  const auto after =
+      std::upper_bound(knots_.begin(), knots_.end(), time, [](Time t, const Knot& knot) { return t < knot.stamp; });
   return (after == knots_.begin() ? after : std::prev(after))->covariance;
 }
 
 std::optional<Pose> Odometry::At(Time time) const {
   if (knots_.empty()) return std::nullopt;
-  const auto after = std::lower_bound(knots_.begin(), knots_.end(), time,
-                                      [](const Knot& knot, Time t) { return knot.stamp < t; });
+  const auto after =
+      std::lower_bound(knots_.begin(), knots_.end(), time, [](const Knot& knot, Time t) { return knot.stamp < t; });
   if (after == knots_.begin()) return knots_.front().T_odom_base;
   if (after == knots_.end()) return knots_.back().T_odom_base;
   const auto before = std::prev(after);
@@ -118,7 +120,8 @@ void Heading::Update(Time stamp, double compass_yaw_rad, double odometry_yaw_rad
   odometry_yaw_rad_ = odometry_yaw_rad;
 }
 
-// Exponential average of the differences and its variance, were they noise: measured over their number, and the filter's own.
+// Exponential average of the differences and its variance, were they noise: measured over their number, and the
+// filter's own.
 bool Heading::IsBent(Time stamp, double difference_rad, double measured_variance) {
   const double share = 1.0 - std::exp(-std::max(0.0, Seconds(stamp - stamp_)) / config_.bend_memory_s);
   difference_rad_ += share * (difference_rad - difference_rad_);

@@ -11,14 +11,15 @@
 namespace merlin {
 
 // How much farther the mean of the four wheels rolls than the rear axle's middle, on a circle: the encoder sits behind
-// ideal differentials and counts the former. 1 at 0, 1.053 at 25 deg for wheelbase 0.33 m, track 0.26 m; even in the angle.
+// ideal differentials and counts the former. 1 at 0, 1.053 at 25 deg for wheelbase 0.33 m, track 0.26 m; even in the
+// angle.
 double WheelMeanRatio(double wheelbase_m, double track_m, double steering_rad);
 
 // Random errors of the wheels, as white noise along the path: they grow with its root, whatever the rate of the states.
 // What a calibration leaves of the systematic ones is not in it.
 struct OdometryConfig {
-  double path_sigma_m_per_sqrt_m = 0.003;     // [0, 1] of the path: slip, counts; guess
-  double steering_sigma_rad_sqrt_m = 0.002;   // [0, 1] of the steering angle's mean over a metre: play; guess
+  double path_sigma_m_per_sqrt_m = 0.003;    // [0, 1] of the path: slip, counts; guess
+  double steering_sigma_rad_sqrt_m = 0.002;  // [0, 1] of the steering angle's mean over a metre: play; guess
 };
 
 template <class Visitor>
@@ -36,8 +37,8 @@ class Odometry {
   // Pose of the car at a time between the oldest and newest state kept (about a second); clamped to these.
   // Nothing before the first state.
   std::optional<Pose> At(Time time) const;
-  // Of x [m], y [m] and yaw [rad] in the odometry's frame, since the first state, to first order; that of the last state
-  // at or before the time.
+  // Of x [m], y [m] and yaw [rad] in the odometry's frame, since the first state, to first order; that of the last
+  // state at or before the time.
   std::optional<Eigen::Matrix3d> CovarianceAt(Time time) const;
 
  private:
@@ -55,15 +56,15 @@ class Odometry {
 };
 
 // The heading: compass (absolute, noisy) and odometry (smooth, drifting) as a Kalman filter of one state, the angle
-// between the odometry's frame and the world. Readings that differ from what the wheels lead to expect, all to one side and
-// more than noise would, come from a field that steel bends: they are left out until they agree again.
+// between the odometry's frame and the world. Readings that differ from what the wheels lead to expect, all to one side
+// and more than noise would, come from a field that steel bends: they are left out until they agree again.
 struct HeadingConfig {
-  double compass_sigma_rad = 0.0175;    // [0.001, 1] of one reading; 1 deg: noise 0.3-1 deg, guess of the data sheet
-  double drift_per_turn = 0.01;         // [0, 1] odometry's yaw error per rad turned; guess
-  double drift_rad_per_sqrt_s = 0.0003; // [0, 1] and over time; guess
-  double bend_memory_s = 1.0;           // [0.05, 100] over which the differences are averaged; guess
-  double bend_sigmas = 3.5;             // [1, 100] of their average, from which the field counts as bent; guess
-  double bend_wait_s = 60.0;            // [0, 1e6] as long it is waited for; then the compass is believed: the wheels were wrong
+  double compass_sigma_rad = 0.0175;     // [0.001, 1] of one reading; 1 deg: noise 0.3-1 deg, guess of the data sheet
+  double drift_per_turn = 0.01;          // [0, 1] odometry's yaw error per rad turned; guess
+  double drift_rad_per_sqrt_s = 0.0003;  // [0, 1] and over time; guess
+  double bend_memory_s = 1.0;            // [0.05, 100] over which the differences are averaged; guess
+  double bend_sigmas = 3.5;              // [1, 100] of their average, from which the field counts as bent; guess
+  double bend_wait_s = 60.0;  // [0, 1e6] as long it is waited for; then the compass is believed: the wheels were wrong
 };
 
 template <class Visitor>
@@ -95,7 +96,8 @@ class Heading {
   bool started_ = false;
   Time stamp_{0};
   double offset_rad_ = 0.0, variance_ = 0.0, odometry_yaw_rad_ = 0.0;
-  double difference_rad_ = 0.0, averaged_ = 0.0;  // of readings from the filter: their average, and of how many (squares' sum)
+  double difference_rad_ = 0.0,
+         averaged_ = 0.0;  // of readings from the filter: their average, and of how many (squares' sum)
   std::optional<Time> bent_since_;
 };
 

@@ -18,7 +18,8 @@ void Pipeline::Add(const DriveState& state) {
 
 void Pipeline::Add(const CompassReading& reading) {
   if (!std::isfinite(reading.yaw_rad)) return;
-  if (const auto T_odom_base = OdomAt(reading.stamp)) heading_.Update(reading.stamp, reading.yaw_rad, Yaw(*T_odom_base));
+  if (const auto T_odom_base = OdomAt(reading.stamp))
+    heading_.Update(reading.stamp, reading.yaw_rad, Yaw(*T_odom_base));
 }
 
 void Pipeline::Add(ColorFrame frame) { color_ = std::move(frame); }

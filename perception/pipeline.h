@@ -58,8 +58,8 @@ class Pipeline {
   std::optional<Observation> Process(DepthFrame frame);
 
  private:
-  std::optional<Pose> OdomAt(Time time) const;                                 // T_odom_base, the stand's turn included
-  std::optional<Pose> CameraAt(const Pose& T_base_camera, Time time) const;    // as the pan unit stands
+  std::optional<Pose> OdomAt(Time time) const;                               // T_odom_base, the stand's turn included
+  std::optional<Pose> CameraAt(const Pose& T_base_camera, Time time) const;  // as the pan unit stands
 
   Rig rig_;
   PerceptionConfig config_;

@@ -34,11 +34,12 @@ std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera) {
 
 namespace {
 
-// A driver that puts the range of a dark pixel to 0 calls it invalid too. One that clipped, or moved, is dark as well: what
-// is left of its phase is no measure of the light.
+// A driver that puts the range of a dark pixel to 0 calls it invalid too. One that clipped, or moved, is dark as well:
+// what is left of its phase is no measure of the light.
 bool IsDark(const FilteredDepth& depth, std::size_t i) {
   const std::uint8_t flags = depth.frame.flags[i];
-  return (depth.reasons[i] == Rejection::kGhost || (flags & kLowSignal) != 0) && (flags & (kSaturated | kInconsistent)) == 0;
+  return (depth.reasons[i] == Rejection::kGhost || (flags & kLowSignal) != 0) &&
+         (flags & (kSaturated | kInconsistent)) == 0;
 }
 
 }  // namespace
@@ -56,11 +57,13 @@ void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, con
   const FreeRange free_range(sheet, depth.frame.settings);
   for (std::size_t i = 0; i < depth.frame.size(); ++i) {
     const Eigen::Vector3f direction = T.linear() * rays[i];
-    if (depth.reasons[i] == Rejection::kSaturated) observation.saturated_base.push_back(direction);
+    if (depth.reasons[i] == Rejection::kSaturated)
+      observation.saturated_base.push_back(direction);
     else if (IsDark(depth, i)) {
       const double free_m = free_range.Of_m(depth.frame.amplitude[i]);
       observation.free_base.push_back(observation.camera_base + direction * static_cast<float>(free_m));
-    } else if (depth.reasons[i] != Rejection::kNone) observation.unknown_base.push_back(direction);
+    } else if (depth.reasons[i] != Rejection::kNone)
+      observation.unknown_base.push_back(direction);
     if (depth.reasons[i] != Rejection::kNone) continue;
     Point point;
     point.position = T * (rays[i] * depth.frame.range_m[i]);

@@ -23,7 +23,8 @@ MeasuredDrives ReadDrives(const std::filesystem::path& file) {
   const auto check = [&](const char* list, auto& all, auto lacks) {
     for (std::size_t i = 0; i < all.size(); ++i)
       if (const char* key = lacks(all[i]))
-        faults += (faults.empty() ? "" : "\n") + file.string() + ": " + list + "[" + std::to_string(i) + "]: missing key '" + key + "'";
+        faults += (faults.empty() ? "" : "\n") + file.string() + ": " + list + "[" + std::to_string(i) +
+                  "]: missing key '" + key + "'";
   };
   check("straights", drives.straights, [](const StraightDrive& d) {
     return d.encoder_counts == 0 ? "encoder_counts" : d.distance_m == 0.0 ? "distance_m" : nullptr;

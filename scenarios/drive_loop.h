@@ -1,4 +1,5 @@
-// The main loop, the same for the twin, a recording and the real car: wait for the tick, poll, perceive, locate, decide, drive.
+// The main loop, the same for the twin, a recording and the real car: wait for the tick, poll, perceive, locate,
+// decide, drive.
 #pragma once
 
 #include <atomic>
@@ -25,17 +26,17 @@ using Hand = std::function<ManualWish(Time now)>;
 struct HandStatus {
   Arbitration arbitration;
   ManualWish wish;
-  double speed_m_s = 0.0;     // by the encoder
-  DriveState state;           // the last one
+  double speed_m_s = 0.0;  // by the encoder
+  DriveState state;        // the last one
   EnergyLevel energy = EnergyLevel::kEnough;
-  std::string doing;          // the pilot, if it drives
+  std::string doing;  // the pilot, if it drives
 };
 
 // What a run may look at from outside, each called in the loop's thread. Any may be empty.
 struct LoopObserver {
   std::function<void(const DepthFrame&)> depth;
   std::function<void(const ColorFrame&)> color;
-  std::function<void(Time now, const Decision&)> tick;  // after every decision
+  std::function<void(Time now, const Decision&)> tick;      // after every decision
   std::function<void(Time now, const HandStatus&)> hand{};  // at every tick that has a hand
   std::function<bool()> car_lost{};  // asked at every tick: true ends the run (the truth knows, see car_watch.h)
 };
@@ -62,7 +63,7 @@ class DriveLoop {
   void Listen(const LoopObserver& observer);
   // On the next depth frame, if there is one.
   std::optional<Decision> Decide(const LoopObserver& observer, bool forget);
-  bool Tick(const LoopObserver& observer);  // true: the task is done
+  bool Tick(const LoopObserver& observer);                          // true: the task is done
   bool TickByHand(const LoopObserver& observer, const Hand& hand);  // true: the operator quits
   std::optional<DriveCommand> Advice(Time now) const;
   LoopEnd Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand);
@@ -78,9 +79,9 @@ class DriveLoop {
   Pilot pilot_;
   Energy energy_;
   Arbiter arbiter_;
-  std::optional<Observation> seen_;     // the newest
-  std::optional<Decision> advice_;      // the pilot's newest, ...
-  Time advised_{0};                     // ... and when it came
+  std::optional<Observation> seen_;  // the newest
+  std::optional<Decision> advice_;   // the pilot's newest, ...
+  Time advised_{0};                  // ... and when it came
   HandStatus status_;
   double metres_per_count_;
   Time last_depth_{0}, last_drive_{0};

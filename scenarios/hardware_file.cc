@@ -15,7 +15,8 @@ namespace merlin {
 
 HardwareConfig ReadHardwareFile(const std::filesystem::path& yaml) {
   const std::string file = yaml.string();
-  if (!std::filesystem::is_regular_file(yaml)) throw InputError(file, "no such file", "a YAML file that names the car's devices");
+  if (!std::filesystem::is_regular_file(yaml))
+    throw InputError(file, "no such file", "a YAML file that names the car's devices");
   YAML::Node root;
   try {
     root = YAML::LoadFile(file);
@@ -34,8 +35,9 @@ HardwareConfig ReadHardwareFile(const std::filesystem::path& yaml) {
 HardwareCameras CamerasOf(const Scenario& scenario) {
   const CarDescription car = ReadCar(CarFile(scenario.car.model));
   const DepthSensor& depth = scenario.sensors.depth;
-  HardwareCameras cameras{.depth = {ReadDepthCameraSheet(DepthCameraFile(depth.camera)), car.T_base_depth, depth.rate_hz},
-                          .depth_settings = SettingsOf(depth)};
+  HardwareCameras cameras{
+      .depth = {ReadDepthCameraSheet(DepthCameraFile(depth.camera)), car.T_base_depth, depth.rate_hz},
+      .depth_settings = SettingsOf(depth)};
   cameras.depth.sheet.latency_s = depth.latency_s.value_or(cameras.depth.sheet.latency_s);
   if (const auto& color = scenario.sensors.color; color && car.T_base_color) {
     cameras.color = {ReadColorCameraSheet(ColorCameraFile(color->camera)), *car.T_base_color, color->rate_hz};

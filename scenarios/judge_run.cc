@@ -32,7 +32,8 @@ GridMap ToGridMap(const OccupancyGrid& grid) {
   if (grid.width() == 0) return {1, 1, grid.cell_m(), {0.0, 0.0}, {-1}};  // nothing seen: one unknown cell, still a map
   GridMap map{grid.width(), grid.height(), grid.cell_m(), grid.origin_m(), {}};
   for (int row = 0; row < grid.height(); ++row)
-    for (int column = 0; column < grid.width(); ++column) map.cells.push_back(static_cast<std::int8_t>(grid.At(column, row)));
+    for (int column = 0; column < grid.width(); ++column)
+      map.cells.push_back(static_cast<std::int8_t>(grid.At(column, row)));
   return map;
 }
 
@@ -54,7 +55,9 @@ TrueRange TrueRangeOf(const sim::RayScene& scene) {
 StackTimes Percentiles(std::vector<double> ms) {
   if (ms.empty()) return {};
   std::ranges::sort(ms);
-  const auto at = [&ms](double share) { return ms[static_cast<std::size_t>(share * static_cast<double>(ms.size() - 1))]; };
+  const auto at = [&ms](double share) {
+    return ms[static_cast<std::size_t>(share * static_cast<double>(ms.size() - 1))];
+  };
   return {at(0.5), at(0.99), ms.back()};
 }
 
@@ -153,8 +156,11 @@ RunResult JudgeRun(const std::string& name, const Scenario& scenario, const Robo
   const GridMap grid = ToGridMap(slam.BuildOccupancy());
   if (write("map.pgm", [&] { return ToPgm(grid); })) write("map.yaml", [&] { return ToMapYaml(grid, "map.pgm"); });
 
-  MapPicture picture{.title = name + ", seed " + std::to_string(scenario.seed), .map = map, .outline = outline,
-                     .truth = true_path, .estimate = estimate};
+  MapPicture picture{.title = name + ", seed " + std::to_string(scenario.seed),
+                     .map = map,
+                     .outline = outline,
+                     .truth = true_path,
+                     .estimate = estimate};
   faults.Try([&] { Measure(true_path, estimate, online, true_world.world, metrics, picture); });
   write("map.png", [&] { return ToPng(picture); });
 

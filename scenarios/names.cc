@@ -41,7 +41,9 @@ std::vector<std::string> CameraNamesOf(CameraKind kind) {
 }
 
 const char* Words(CameraKind kind) {
-  return kind == CameraKind::kDepth ? "a time-of-flight camera" : kind == CameraKind::kColor ? "a colour camera" : "no camera";
+  return kind == CameraKind::kDepth   ? "a time-of-flight camera"
+         : kind == CameraKind::kColor ? "a colour camera"
+                                      : "no camera";
 }
 
 // What is wrong with a sheet of its own kind, its reader says.

@@ -33,13 +33,17 @@ using WallClock = std::chrono::steady_clock;
 
 constexpr Duration kReady = std::chrono::seconds(10);  // until every device has delivered
 
-double SecondsSince(WallClock::time_point begin) { return std::chrono::duration<double>(WallClock::now() - begin).count(); }
+double SecondsSince(WallClock::time_point begin) {
+  return std::chrono::duration<double>(WallClock::now() - begin).count();
+}
 
 // A check of the map against a plan needs a plan.
 void RequirePlan(const RunOptions& options, const sim::World& world) {
   for (const CheckLimit& check : options.scenario.checks)
-    if (world.plan_xy_m().empty() && (check.name.starts_with("map_size") || check.name.starts_with("laps") || check.name.starts_with("coverage")))
-      throw InputError(options.scenario.room, "no plan", "a numeric plan_xy_m, which the check " + check.name + " needs");
+    if (world.plan_xy_m().empty() &&
+        (check.name.starts_with("map_size") || check.name.starts_with("laps") || check.name.starts_with("coverage")))
+      throw InputError(options.scenario.room, "no plan",
+                       "a numeric plan_xy_m, which the check " + check.name + " needs");
 }
 
 double PeakRss_mb() {

@@ -81,10 +81,11 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
     faults.push_back(file.string() + ": curtain: expected open or closed, got '" + scenario.curtain + "'");
   const std::vector<std::string> behaviors = BehaviorNames();
   if (std::ranges::find(behaviors, scenario.task.behavior) == behaviors.end())
-    faults.push_back(file.string() + ": task.behavior: unknown behavior '" + scenario.task.behavior + "'; did you mean '" +
-                     NearestName(scenario.task.behavior, behaviors) + "'?");
+    faults.push_back(file.string() + ": task.behavior: unknown behavior '" + scenario.task.behavior +
+                     "'; did you mean '" + NearestName(scenario.task.behavior, behaviors) + "'?");
   for (const ObstacleEvent& event : scenario.obstacles)
-    if (!(event.disappear_s > event.appear_s)) faults.push_back(file.string() + ": obstacles: one disappears before it appears");
+    if (!(event.disappear_s > event.appear_s))
+      faults.push_back(file.string() + ": obstacles: one disappears before it appears");
   if (faults.empty()) return scenario;
   std::string all = faults.front();
   for (std::size_t i = 1; i < faults.size(); ++i) all += "\n" + faults[i];

@@ -18,7 +18,7 @@
 namespace merlin {
 
 struct CarStart {
-  double x_m = 0.0;      // base_link in the room's frame
+  double x_m = 0.0;  // base_link in the room's frame
   double y_m = 0.0;
   double yaw_rad = 0.0;
 };
@@ -34,8 +34,8 @@ struct CarChoice {
   std::string model = "merlin";  // models/<name>/<name>.urdf, or a path
   CarStart start;
   sim::DrivetrainConfig drivetrain;  // of the twin: how the true car differs from its model
-  bool pan = false;                  // the unit that turns the cameras moves (pan_joint of the model); false: it is held ahead
-  std::string calibration;           // what the stack believes: a file of `merlin calibrate odometry`; empty: the model
+  bool pan = false;         // the unit that turns the cameras moves (pan_joint of the model); false: it is held ahead
+  std::string calibration;  // what the stack believes: a file of `merlin calibrate odometry`; empty: the model
 };
 
 template <class Visitor>
@@ -54,8 +54,8 @@ struct DepthSensor {
   double integration_us = 1000.0;   // valid ones: the camera's sheet
   double frequency_mhz = 20.0;
   double second_frequency_mhz = 0.0;  // 0: none; another valid one: eight sub-frames, and a range that wraps later
-  bool post_processing = false;     // the maker's own: low amplitudes masked, 3x3 median
-  std::optional<double> latency_s;  // default: the sheet's
+  bool post_processing = false;       // the maker's own: low amplitudes masked, 3x3 median
+  std::optional<double> latency_s;    // default: the sheet's
 };
 
 template <class Visitor>
@@ -73,9 +73,9 @@ void Visit(Visitor& v, DepthSensor& c) {
 struct ColorSensor {
   std::string camera = "ccd";
   double rate_hz = 10.0;
-  bool required = true;             // without GL: stop before it starts (true), or run without colour (false)
+  bool required = true;               // without GL: stop before it starts (true), or run without colour (false)
   std::optional<double> exposure_us;  // fixed, at gain 1; default: automatic. Valid ones: the camera's sheet
-  bool motion_blur = false;         // eight pictures a frame, each at the cost of one
+  bool motion_blur = false;           // eight pictures a frame, each at the cost of one
   std::optional<double> latency_s;
 };
 
@@ -91,7 +91,7 @@ void Visit(Visitor& v, ColorSensor& c) {
 
 struct CompassSensor {
   double rate_hz = 10.0;
-  double noise_rad = 0.0087;  // one sigma of each angle; 0.5 deg (data sheets: 0.3-1 deg)
+  double noise_rad = 0.0087;      // one sigma of each angle; 0.5 deg (data sheets: 0.3-1 deg)
   std::vector<sim::Steel> steel;  // of the twin: what bends its field
 };
 
@@ -104,7 +104,7 @@ void Visit(Visitor& v, CompassSensor& c) {
 
 struct Sensors {
   DepthSensor depth;
-  std::optional<ColorSensor> color;      // not listed: the robot has none
+  std::optional<ColorSensor> color;  // not listed: the robot has none
   std::optional<CompassSensor> compass;
 };
 
@@ -117,11 +117,11 @@ void Visit(Visitor& v, Sensors& c) {
 
 // A box that appears before the car and goes away again.
 struct ObstacleEvent {
-  double appear_s = 0.0;           // run time
+  double appear_s = 0.0;  // run time
   double disappear_s = 1e6;
-  double ahead_m = 3.0;            // its near face before the car's base_link along the car's heading at that instant
-  double left_m = 0.0;             // its middle to the left of it
-  double length_m = 0.4;           // edges along the heading, across, up
+  double ahead_m = 3.0;   // its near face before the car's base_link along the car's heading at that instant
+  double left_m = 0.0;    // its middle to the left of it
+  double length_m = 0.4;  // edges along the heading, across, up
   double width_m = 0.4;
   double height_m = 0.5;
   std::string material = "dark_box";
@@ -140,10 +140,10 @@ void Visit(Visitor& v, ObstacleEvent& c) {
 }
 
 struct Scenario {
-  std::string room;                // models/rooms/<name>.xml, or a path
-  std::string curtain = "open";    // open or closed; closed needs a room with a curtain
+  std::string room;              // models/rooms/<name>.xml, or a path
+  std::string curtain = "open";  // open or closed; closed needs a room with a curtain
   CarChoice car;
-  double duration_s = 60.0;        // the run ends here at the latest; earlier when the task is done
+  double duration_s = 60.0;  // the run ends here at the latest; earlier when the task is done
   std::uint64_t seed = 1;
   Sensors sensors;
   Task task;
@@ -170,9 +170,10 @@ void Visit(Visitor& v, Scenario& c) {
   v("pilot", c.pilot);
 }
 
-// name: of a file in scenarios/ without its ending, or a path; paths in it are relative to its own folder. overrides: "a.b=c" each, applied over the file.
-// Throws InputError: unknown scenario or key (names the nearest), broken YAML (file and line), a value of the wrong kind or
-// out of its range, an unknown check or behavior: all faults at once, a line each.
+// name: of a file in scenarios/ without its ending, or a path; paths in it are relative to its own folder. overrides:
+// "a.b=c" each, applied over the file. Throws InputError: unknown scenario or key (names the nearest), broken YAML
+// (file and line), a value of the wrong kind or out of its range, an unknown check or behavior: all faults at once, a
+// line each.
 Scenario ReadScenario(const std::string& name, const std::vector<std::string>& overrides);
 
 // The scenario with every default written out; reading it gives the same scenario.

@@ -48,7 +48,8 @@ void Truth::WatchObstacles(sim::World& world) {
     const bool present = now_s >= event.appear_s && now_s < event.disappear_s;
     if (present && !placed_[i]) {
       const Pose T_world_base = world.T_world_base();
-      const Pose T_world_flat = FromXyYaw(T_world_base.translation().x(), T_world_base.translation().y(), Yaw(T_world_base));
+      const Pose T_world_flat =
+          FromXyYaw(T_world_base.translation().x(), T_world_base.translation().y(), Yaw(T_world_base));
       world.PlaceObstacle(NameOf(i), T_world_flat * FromXyYaw(event.ahead_m + 0.5 * event.length_m, event.left_m, 0.0));
     }
     if (!present && placed_[i]) world.RemoveObstacle(NameOf(i));

@@ -17,7 +17,9 @@ namespace merlin {
 namespace {
 
 void RequireRate(const char* field, double rate_hz, double max_hz) {
-  if (!(rate_hz <= max_hz)) throw InputError(field, "faster than the camera", fmt::format("up to {:g} Hz", max_hz), fmt::format("{:g} Hz", rate_hz));
+  if (!(rate_hz <= max_hz))
+    throw InputError(field, "faster than the camera", fmt::format("up to {:g} Hz", max_hz),
+                     fmt::format("{:g} Hz", rate_hz));
 }
 
 void RequireMaterial(const std::string& name, const sim::Materials& materials) {
@@ -32,12 +34,13 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   const Sensors& sensors = scenario.sensors;
   TwinOptions twin;
   const CarStart& start = scenario.car.start;
-  twin.world = {RoomFile(scenario.room), ReadCar(CarFile(scenario.car.model)), FromXyYaw(start.x_m, start.y_m, start.yaw_rad),
-                ObstaclesOf(scenario), scenario.curtain == "closed"};
+  twin.world = {RoomFile(scenario.room), ReadCar(CarFile(scenario.car.model)),
+                FromXyYaw(start.x_m, start.y_m, start.yaw_rad), ObstaclesOf(scenario), scenario.curtain == "closed"};
   twin.materials = sim::ReadMaterials(Home() / "models/materials.yaml");
   twin.world.drivetrain = scenario.car.drivetrain;
   if (scenario.car.pan) {
-    if (!twin.world.car.pan) throw InputError("car.pan", "the car '" + scenario.car.model + "' has no joint that turns its cameras");
+    if (!twin.world.car.pan)
+      throw InputError("car.pan", "the car '" + scenario.car.model + "' has no joint that turns its cameras");
     twin.world.car.pan->moves = true;
   }
   if (IsOnStand(scenario.task)) twin.world.stand_rate_rad_s = scenario.task.rate_deg_s * std::numbers::pi / 180.0;
@@ -46,11 +49,13 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   twin.depth = {ReadDepthCameraSheet(depth_file), ReadDepthCameraErrors(depth_file), SettingsOf(sensors.depth),
                 sim::ParseTofEffects(sensors.depth.effects), sensors.depth.rate_hz};
   RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, twin.depth.sheet.rate_max_hz);
-  RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, 1.0 / twin.depth.sheet.ExposureSpan_s(twin.depth.settings));
+  RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz,
+              1.0 / twin.depth.sheet.ExposureSpan_s(twin.depth.settings));
   for (const ObstacleEvent& event : scenario.obstacles) RequireMaterial(event.material, twin.materials);
   twin.depth.sheet.latency_s = sensors.depth.latency_s.value_or(twin.depth.sheet.latency_s);
   if (sensors.color && twin.world.car.T_base_color) {
-    twin.color.emplace(ReadColorCameraSheet(ColorCameraFile(sensors.color->camera)), sensors.color->rate_hz, options.gl);
+    twin.color.emplace(ReadColorCameraSheet(ColorCameraFile(sensors.color->camera)), sensors.color->rate_hz,
+                       options.gl);
     RequireRate("sensors.color.rate_hz", sensors.color->rate_hz, twin.color->sheet.rate_max_hz);
     twin.color->sheet.latency_s = sensors.color->latency_s.value_or(twin.color->sheet.latency_s);
     if (sensors.color->exposure_us)
@@ -58,7 +63,9 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
     twin.color->motion_blur = sensors.color->motion_blur;
   }
   if (sensors.compass && twin.world.car.T_base_compass)
-    twin.compass.emplace(sim::CompassConfig{sensors.compass->noise_rad, sensors.compass->noise_rad, sensors.compass->steel}, sensors.compass->rate_hz);
+    twin.compass.emplace(
+        sim::CompassConfig{sensors.compass->noise_rad, sensors.compass->noise_rad, sensors.compass->steel},
+        sensors.compass->rate_hz);
   twin.end = FromSeconds(scenario.duration_s);
   twin.threads = options.threads;
   return twin;
@@ -97,7 +104,9 @@ void MakeWithColor(TwinOptions options, const Scenario& scenario, std::string& n
   try {
     return make(options);
   } catch (const MachineError& error) {
-    if (required) throw MachineError("this scenario needs the colour camera (sensors.color.required): " + std::string(error.what()));
+    if (required)
+      throw MachineError("this scenario needs the colour camera (sensors.color.required): " +
+                         std::string(error.what()));
     note = "depth only: " + std::string(error.what());
   }
   options.color.reset();

@@ -45,7 +45,8 @@ class YamlReader {
   // Reads the whole config, unknown keys included.
   template <class Config>
   void ReadInto(Config& config) {
-    if (!node_.IsMap()) return Fault(node_, path_.empty() ? "the file" : path_.substr(0, path_.size() - 1), "expected a map of keys");
+    if (!node_.IsMap())
+      return Fault(node_, path_.empty() ? "the file" : path_.substr(0, path_.size() - 1), "expected a map of keys");
     Visit(*this, config);
     std::set<std::string> seen;
     for (const auto& entry : node_) {
@@ -88,14 +89,17 @@ class YamlReader {
 
   template <class T>
   void ReadScalar(const YAML::Node& node, const std::string& field, T& value, Range range) {
-    const char* kind = std::is_same_v<T, std::string> ? "a text" : std::is_same_v<T, bool> ? "true or false"
-                       : std::is_integral_v<T> ? "a whole number" : "a number";
+    const char* kind = std::is_same_v<T, std::string> ? "a text"
+                       : std::is_same_v<T, bool>      ? "true or false"
+                       : std::is_integral_v<T>        ? "a whole number"
+                                                      : "a number";
     const std::string got = node.IsScalar() ? "got '" + node.Scalar() + "'" : "got no single value";
     if (!Convert(node, value)) return Fault(node, field, "expected " + std::string(kind) + ", " + got);
     if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
       const double number = static_cast<double>(value);
       if (!std::isfinite(number) || !(number >= range.min && number <= range.max))
-        Fault(node, field, "expected a number in [" + detail::Text(range.min) + ", " + detail::Text(range.max) + "], " + got);
+        Fault(node, field,
+              "expected a number in [" + detail::Text(range.min) + ", " + detail::Text(range.max) + "], " + got);
     }
   }
 

@@ -17,7 +17,8 @@ constexpr std::array<Knot, 7> kCurve{
     {{0.0, 0.83}, {0.05, 0.96}, {0.1, 1.0}, {0.2, 1.03}, {0.5, 1.06}, {0.9, 1.1}, {1.0, 1.17}}};
 
 double CurveAt(double charge) {
-  const auto above = std::find_if(kCurve.begin() + 1, kCurve.end() - 1, [&](const Knot& k) { return k.charge >= charge; });
+  const auto above =
+      std::find_if(kCurve.begin() + 1, kCurve.end() - 1, [&](const Knot& k) { return k.charge >= charge; });
   const Knot &to = *above, &from = *(above - 1);
   return from.share + (to.share - from.share) * (charge - from.charge) / (to.charge - from.charge);
 }
@@ -36,8 +37,9 @@ double Battery::Terminal_v(const MotorLoad& motor) const {
   if (config_.always_nominal) return nominal_v_;
   // V = V0 - R (load + duty * (duty V - emf) / R_motor), solved for V.
   const double share = config_.resistance_ohm / motor.resistance_ohm;
-  const double terminal_v = (OpenCircuit_v() - config_.resistance_ohm * Load_a() + share * motor.duty * motor.back_emf_v) /
-                            (1.0 + share * motor.duty * motor.duty);
+  const double terminal_v =
+      (OpenCircuit_v() - config_.resistance_ohm * Load_a() + share * motor.duty * motor.back_emf_v) /
+      (1.0 + share * motor.duty * motor.duty);
   return std::max(terminal_v, 0.0);  // one that cannot even feed the electronics
 }
 

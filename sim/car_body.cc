@@ -32,9 +32,7 @@ void SetInertial(const CarLink& link, mjsBody* body) {
 
 // A joint moves where the car drives or steers; other joints are held at 0. How far the knuckles turn is their
 // linkage's business (see sim/drivetrain.h).
-bool IsPan(const CarDescription& car, std::size_t index) {
-  return car.pan && car.pan->moves && car.pan->link == index;
-}
+bool IsPan(const CarDescription& car, std::size_t index) { return car.pan && car.pan->moves && car.pan->link == index; }
 
 bool Moves(const CarDescription& car, std::size_t index) {
   return FindWheel(car, index) != nullptr || std::ranges::find(car.knuckles, index) != car.knuckles.end() ||
@@ -121,7 +119,7 @@ void AddTyre(const CarDescription& car, const CarWheel& wheel, const mjsDefault*
   SetPose(wheel.T_link_tyre, geom->pos, geom->quat);
   geom->type = mjGEOM_ELLIPSOID;
   geom->size[0] = geom->size[1] = car.wheel_radius_m, geom->size[2] = wheel.width_m / 2.0;
-  geom->condim = 3;    // no torsional friction: a tyre steered on the spot would fight it
+  geom->condim = 3;  // no torsional friction: a tyre steered on the spot would fight it
   geom->friction[0] = car.drivetrain.tyre_friction;
   geom->solref[0] = 0.01, geom->solref[1] = 1.0;
   geom->solimp[0] = 0.95, geom->solimp[1] = 0.99, geom->solimp[2] = 0.001;
@@ -137,8 +135,8 @@ void AddVisual(mjSpec* spec, const CarLink& link, const mjsDefault* plain, mjsBo
   }
 }
 
-// The body whose part a link is when it meets the room: its own if it moves against its parent, else the one it is fixed
-// to. Six bodies to hold against every wall instead of a dozen: physics alone is a quarter faster.
+// The body whose part a link is when it meets the room: its own if it moves against its parent, else the one it is
+// fixed to. Six bodies to hold against every wall instead of a dozen: physics alone is a quarter faster.
 struct Carrier {
   mjsBody* body;
   Pose T_carrier_link;

@@ -29,7 +29,8 @@ class Exposure {
 
 }  // namespace
 
-ColorCamera::ColorCamera(const mjModel* model, const ColorCameraSheet& sheet, Gl gl, std::uint64_t seed, bool motion_blur)
+ColorCamera::ColorCamera(const mjModel* model, const ColorCameraSheet& sheet, Gl gl, std::uint64_t seed,
+                         bool motion_blur)
     : sheet_(sheet),
       lens_(sheet.camera),
       renderer_(model, lens_.pinhole(), gl),

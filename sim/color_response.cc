@@ -52,7 +52,8 @@ void LookUp(const float* table, const std::array<int, kCount>& index, float* out
 #ifdef __AVX2__
   static_assert(kCount % 8 == 0);
   for (std::size_t i = 0; i < kCount; i += 8)
-    _mm256_storeu_ps(out + i, _mm256_i32gather_ps(table, _mm256_load_si256(reinterpret_cast<const __m256i*>(&index[i])), 4));
+    _mm256_storeu_ps(out + i,
+                     _mm256_i32gather_ps(table, _mm256_load_si256(reinterpret_cast<const __m256i*>(&index[i])), 4));
 #else
   for (std::size_t i = 0; i < kCount; ++i) out[i] = table[index[i]];
 #endif
@@ -91,9 +92,9 @@ ColorResponse::ColorResponse(const ColorCameraSheet& sheet, std::uint64_t seed)
 
 // What a picture's settings make of its values.
 struct ColorResponse::Scale {
-  std::array<float, 256> light_wells{};            // by rendered value: electrons in full wells, on the axis
+  std::array<float, 256> light_wells{};        // by rendered value: electrons in full wells, on the axis
   std::array<float, kChunk> steps_per_well{};  // of channels b, g, r, b, ...
-  float shot_variance_wells = 0.0f;                // of one full well of light
+  float shot_variance_wells = 0.0f;            // of one full well of light
   float read_variance_wells = 0.0f;
 };
 
@@ -158,7 +159,8 @@ void ColorResponse::Expose(std::span<std::uint8_t> bgr, const ColorSettings& set
   }
 }
 
-ColorSettings NextExposure(const ColorCameraSheet& sheet, const ColorSettings& settings, std::span<const std::uint8_t> bgr) {
+ColorSettings NextExposure(const ColorCameraSheet& sheet, const ColorSettings& settings,
+                           std::span<const std::uint8_t> bgr) {
   constexpr double kGreyCard = 0.18;
   constexpr std::size_t kEvery = 31;  // values; a few per cent of them give the mean as well
   std::array<double, 256> light{};

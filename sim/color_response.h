@@ -13,8 +13,8 @@ namespace merlin::sim {
 
 // A rendered 8-bit value is taken as sRGB (IEC 61966-2-1): this is its linear light, white 1. A camera codes its own
 // pictures the same way, so that a nominally exposed one looks as rendered.
-double LinearOfSrgb(double value);       // value 0 to 255
-double SrgbOfLinear(double light);       // light 0 to 1, not rounded
+double LinearOfSrgb(double value);  // value 0 to 255
+double SrgbOfLinear(double light);  // light 0 to 1, not rounded
 
 class ColorResponse {
  public:
@@ -22,7 +22,8 @@ class ColorResponse {
 
   // In place, from a rendered picture as the lens forms it to what the camera delivers. Electrons of a pixel: full well
   // times linear light times exposure over nominal exposure times cos^falloff_power; shot noise of as many electrons
-  // (Gaussian) and read noise; clipped at the full well; times gain and white balance; 4096 steps, clipped, coded in 8 bit.
+  // (Gaussian) and read noise; clipped at the full well; times gain and white balance; 4096 steps, clipped, coded in 8
+  // bit.
   void Expose(std::span<std::uint8_t> bgr, const ColorSettings& settings, std::uint64_t frame) const;
 
  private:
@@ -41,6 +42,7 @@ class ColorResponse {
 // The automatic exposure: from the settings a picture was taken with and the picture, those of the next one. The mean
 // linear light goes half the way (in stops) to 0.18, a grey card, unless it is within a quarter stop; exposure time
 // first, then gain.
-ColorSettings NextExposure(const ColorCameraSheet& sheet, const ColorSettings& settings, std::span<const std::uint8_t> bgr);
+ColorSettings NextExposure(const ColorCameraSheet& sheet, const ColorSettings& settings,
+                           std::span<const std::uint8_t> bgr);
 
 }  // namespace merlin::sim

@@ -13,7 +13,7 @@ namespace merlin::sim {
 struct Steel {
   double x_m = 0.0, y_m = 0.0;  // in the room's frame
   double reach_m = 1.0;         // [0.05, 100]
-  double bend_rad = 0.2;        // [-3, 3] of the heading right at it; corridors of reinforced concrete: 2-20 deg (guess)
+  double bend_rad = 0.2;  // [-3, 3] of the heading right at it; corridors of reinforced concrete: 2-20 deg (guess)
 };
 
 template <class Visitor>

@@ -1,5 +1,5 @@
-// The on-board electronics of the drive: battery, H-bridge, microcontroller with its speed loop, encoder and servo. They
-// turn a DriveCommand into volts and a steering set point, and report.
+// The on-board electronics of the drive: battery, H-bridge, microcontroller with its speed loop, encoder and servo.
+// They turn a DriveCommand into volts and a steering set point, and report.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -16,8 +16,8 @@
 namespace merlin::sim {
 
 // The speed loop (feed-forward and PI, limited in acceleration) runs at its own rate from encoder counts. It knows the
-// linkage and regulates the speed of the rear axle's middle, not the four wheels' mean. It believes the description: a car
-// of another wheel radius or wheelbase drives another speed.
+// linkage and regulates the speed of the rear axle's middle, not the four wheels' mean. It believes the description: a
+// car of another wheel radius or wheelbase drives another speed.
 class DriveController {
  public:
   DriveController() = default;
@@ -51,10 +51,10 @@ class DriveController {
   double shaft_inertia_kg_m2_ = 0.0;
   double speed_setpoint_m_s_ = 0.0;  // of the rear axle's middle, limited in acceleration
   double integral_v_ = 0.0;
-  std::int64_t loop_counts_ = 0;     // the encoder's at the last turn of the loop
-  double still_s_ = 0.0;             // how long it has counted nothing
-  double duty_ = 0.0;                // of the bridge
-  double terminal_v_ = 0.0;          // of the battery, during the coming or last step
+  std::int64_t loop_counts_ = 0;  // the encoder's at the last turn of the loop
+  double still_s_ = 0.0;          // how long it has counted nothing
+  double duty_ = 0.0;             // of the bridge
+  double terminal_v_ = 0.0;       // of the battery, during the coming or last step
   int motor_ctrl_ = -1, motor_output_ = -1, servo_ctrl_ = -1, steering_qpos_ = -1;  // addresses in mjData
 };
 

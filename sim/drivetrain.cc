@@ -19,7 +19,6 @@ constexpr double kServoStiffness_n_m_rad = 20.0;
 constexpr double kServoDamping_n_m_s_rad = 0.4;
 constexpr double kServoInertia_kg_m2 = 2e-3;
 
-
 void CheckSpec(const char* error) {
   if (error != nullptr && *error != '\0') throw std::logic_error(std::string("MuJoCo refuses an actuator: ") + error);
 }

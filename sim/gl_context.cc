@@ -115,7 +115,9 @@ void GlContext::OpenOsmesa() {
   get_ = get_proc;
   // OSMesa wants a colour buffer; the picture goes to MuJoCo's own, so one pixel is enough.
   const auto pixel = std::make_shared<std::array<std::uint8_t, 4>>();
-  make_current_ = [=] { Require(make_current(context, pixel->data(), kOsmesaUnsignedByte, 1, 1), "OSMesaMakeCurrent"); };
+  make_current_ = [=] {
+    Require(make_current(context, pixel->data(), kOsmesaUnsignedByte, 1, 1), "OSMesaMakeCurrent");
+  };
   release_ = [=] { make_current(nullptr, nullptr, kOsmesaUnsignedByte, 0, 0); };
   destroy_ = [=] { destroy(context); };
   const Current current(*this);

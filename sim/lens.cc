@@ -19,7 +19,8 @@ std::vector<Eigen::Vector2d> UndistortedPixels(const CameraModel& camera) {
   pixels.reserve(static_cast<std::size_t>(camera.width) * camera.height);
   for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u) {
-      const Eigen::Vector2d xy = camera.Undistort({(u - camera.cx_px) / camera.fx_px, (v - camera.cy_px) / camera.fy_px});
+      const Eigen::Vector2d xy =
+          camera.Undistort({(u - camera.cx_px) / camera.fx_px, (v - camera.cy_px) / camera.fy_px});
       pixels.emplace_back(camera.fx_px * xy.x() + camera.cx_px, camera.fy_px * xy.y() + camera.cy_px);
     }
   return pixels;

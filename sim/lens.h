@@ -24,7 +24,7 @@ class Lens {
 
  private:
   struct Place {
-    std::uint32_t first;     // byte of the upper left of the four pixels
+    std::uint32_t first;                // byte of the upper left of the four pixels
     std::uint16_t right_256, down_256;  // shares of the right and the lower ones
   };
   CameraModel pinhole_;

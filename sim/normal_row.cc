@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kPerStep_rad = std::numbers::pi_v<float> * 0x1p-31f;
 
-// Natural logarithm of x in (0, 1], error < 2e-7 of it or of 1: the minimax polynomial of Cephes (Moshier, logf), without
-// branches. 2^-33 is the least that comes.
+// Natural logarithm of x in (0, 1], error < 2e-7 of it or of 1: the minimax polynomial of Cephes (Moshier, logf),
+// without branches. 2^-33 is the least that comes.
 inline float Log(float x) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
   float exponent = static_cast<float>(static_cast<int>(bits >> 23) - 126);
@@ -45,8 +45,8 @@ inline float Uniform(std::uint32_t word) {
 void NormalRow::Draw(std::uint64_t seed, Sensor sensor, std::uint64_t frame, std::uint32_t first_pixel,
                      std::uint16_t purpose, std::uint32_t draw) {
   const std::array<std::uint32_t, 2> key{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)};
-  const std::uint32_t stream = static_cast<std::uint32_t>(frame >> 32 & 0xFF) | static_cast<std::uint32_t>(sensor) << 8 |
-                               std::uint32_t{purpose} << 16;
+  const std::uint32_t stream = static_cast<std::uint32_t>(frame >> 32 & 0xFF) |
+                               static_cast<std::uint32_t>(sensor) << 8 | std::uint32_t{purpose} << 16;
   for (std::size_t first = 0; first < count_; first += 8) {
     const PhiloxOctet words = Philox4x32Octet(
         {draw, first_pixel + static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(frame), stream}, key);

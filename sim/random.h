@@ -21,8 +21,8 @@ enum class Sensor : std::uint32_t { kDepth = 1, kColor = 2, kCompass = 3, kDrive
 class Random {
  public:
   Random(std::uint64_t seed, Sensor sensor, std::uint64_t frame, std::uint32_t pixel = 0, std::uint16_t purpose = 0);
-  double Uniform();             // (0, 1), in steps of 2^-32
-  double Normal();              // mean 0, sigma 1
+  double Uniform();  // (0, 1), in steps of 2^-32
+  double Normal();   // mean 0, sigma 1
   // The next two normal numbers are these, drawn elsewhere: first, then second.
   void Give(float first, float second) { normals_ = {second, first}, ready_ = 2; }
   double Poisson(double mean);  // mean >= 0; a Gaussian of the same variance above 50

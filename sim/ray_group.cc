@@ -76,10 +76,9 @@ void AddMesh(RayGroup& group, const mjModel* model, int geom, const Pose& T_grou
     group.triangles.push_back({vertex(0), vertex(1), vertex(2)});
     const RayFace face = FaceThrough(group, geom, vertex(0), vertex(1), vertex(2));
     const Eigen::Vector3d rounded = 1e5 * face.normal;
-    const auto [found, is_new] =
-        known.try_emplace({std::lround(rounded.x()), std::lround(rounded.y()), std::lround(rounded.z()),
-                           std::lround(1e4 * face.offset_m)},
-                          static_cast<int>(group.faces.size()));
+    const auto [found, is_new] = known.try_emplace({std::lround(rounded.x()), std::lround(rounded.y()),
+                                                    std::lround(rounded.z()), std::lround(1e4 * face.offset_m)},
+                                                   static_cast<int>(group.faces.size()));
     if (is_new) group.faces.push_back(face);
     group.face_of_triangle.push_back(found->second);
   }

@@ -40,8 +40,8 @@ void RefuseFaults(const DrivetrainConfig& config) {
   if (faults.empty()) return;
   std::string all;
   for (const Fault& fault : faults)
-    all += fmt::format("{}drivetrain.{}: expected a number {}, got {}", all.empty() ? "" : "\n", fault.field, fault.rule,
-                       fault.value);
+    all += fmt::format("{}drivetrain.{}: expected a number {}, got {}", all.empty() ? "" : "\n", fault.field,
+                       fault.rule, fault.value);
   throw InputError(all);
 }
 
@@ -91,7 +91,8 @@ World::World(const WorldOptions& options) {
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::abs(data_->geom_xpos[3 * geom + axis]) < kFarthest_m))
         throw InputError(options.room.string(), "geom '" + GeomName(model_.get(), geom) + "' stands nowhere",
-                         fmt::format("a position within {:g} m", kFarthest_m), fmt::format("{:g}", data_->geom_xpos[3 * geom + axis]));
+                         fmt::format("a position within {:g} m", kFarthest_m),
+                         fmt::format("{:g}", data_->geom_xpos[3 * geom + axis]));
   RefuseStartInContact(options);
   drive_ = DriveController(model_.get(), options.car, drivetrain, options.seed);
   if (pans) pan_ = PanServo(model_.get(), options.car);
@@ -133,7 +134,8 @@ void World::ReadNumerics(const std::string& room) {
     throw InputError(room, "numeric plan_xy_m", "x and y of three corners or more",
                      fmt::format("{} numbers", plan.size()));
   for (const mjtNum number : plan)
-    if (!std::isfinite(number)) throw InputError(room, "numeric plan_xy_m", "finite numbers", fmt::format("{}", number));
+    if (!std::isfinite(number))
+      throw InputError(room, "numeric plan_xy_m", "finite numbers", fmt::format("{}", number));
   for (std::size_t i = 0; i < plan.size(); i += 2) plan_xy_m_.emplace_back(plan[i], plan[i + 1]);
   if (const auto north = numbers("north_yaw_rad"); !north.empty()) north_yaw_rad_ = north[0];
 }
@@ -182,7 +184,8 @@ void World::PutOnFloor(const WorldOptions& options) {
     throw InputError(room, "the car does not start on the floor", "a geom named floor* below the start",
                      fmt::format("nothing at x {} m, y {} m", start.x(), start.y()));
   const double lift_m = options.stand_rate_rad_s ? kStandHeight_m : 0.0;
-  data_->qpos[model_->jnt_qposadr[model_->body_jntadr[base_body_]] + 2] = start.z() + kFloorSearch_m - nearest_m + lift_m;
+  data_->qpos[model_->jnt_qposadr[model_->body_jntadr[base_body_]] + 2] =
+      start.z() + kFloorSearch_m - nearest_m + lift_m;
 }
 
 void World::RefuseStartInContact(const WorldOptions& options) const {
@@ -194,8 +197,7 @@ void World::RefuseStartInContact(const WorldOptions& options) const {
     if (geom >= 0 && model_->geom_type[geom] == mjGEOM_MESH)
       notes += "; a closed mesh is solid within, a shell to drive in has an open side or faces that look inward";
     throw InputError(options.room.string(), fmt::format("the car cannot start at x {} m, y {} m", start.x(), start.y()),
-                     "a free place",
-                     fmt::format("its {} in '{}'{}", part, other, notes));
+                     "a free place", fmt::format("its {} in '{}'{}", part, other, notes));
   };
   if (const auto touches = CarTouches(); !touches.empty()) refuse(touches[0].car_geom, touches[0].other_geom);
   // A part wholly inside a solid has no contact with its surface.
@@ -264,8 +266,8 @@ BodyMotion World::CameraMotion(const Pose& T_base_camera) const {
   mj_objectVelocity(model_.get(), data_.get(), mjOBJ_XBODY, pan_body_, velocity, 0);
   const Eigen::Vector3d turn(velocity[0], velocity[1], velocity[2]);
   const Eigen::Vector3d pivot = base.T_world_body * car_.pan->T_base_pan.translation();
-  camera.velocity_m_s = Eigen::Vector3d(velocity[3], velocity[4], velocity[5]) +
-                        turn.cross(camera.T_world_body.translation() - pivot);
+  camera.velocity_m_s =
+      Eigen::Vector3d(velocity[3], velocity[4], velocity[5]) + turn.cross(camera.T_world_body.translation() - pivot);
   camera.angular_velocity_rad_s = turn;
   return camera;
 }

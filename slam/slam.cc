@@ -8,13 +8,13 @@
 namespace merlin {
 namespace {
 
-constexpr int kRecallAtOnce = 2;       // former key frames put back into the local map a frame: it keeps up at 4 m/s
-constexpr double kRecall_m = 4.0;      // of views whose middles are nearer than this
-constexpr double kStands_m = 1e-3;     // from one frame to the next
-constexpr double kSightsApart_s = 0.3; // of a car that stands...
-constexpr double kAgainApart_s = 0.8;  // ...or comes by again: a lap more keeps under 10 MB
-constexpr std::size_t kSights = 4;     // a key frame's own, and three: as many as decide that something has gone
-constexpr double kLate_m = 1.0;        // what was seen on the last metre looks for loops
+constexpr int kRecallAtOnce = 2;        // former key frames put back into the local map a frame: it keeps up at 4 m/s
+constexpr double kRecall_m = 4.0;       // of views whose middles are nearer than this
+constexpr double kStands_m = 1e-3;      // from one frame to the next
+constexpr double kSightsApart_s = 0.3;  // of a car that stands...
+constexpr double kAgainApart_s = 0.8;   // ...or comes by again: a lap more keeps under 10 MB
+constexpr std::size_t kSights = 4;      // a key frame's own, and three: as many as decide that something has gone
+constexpr double kLate_m = 1.0;         // what was seen on the last metre looks for loops
 
 }  // namespace
 
@@ -88,16 +88,18 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   return T_map_base;
 }
 
-// Nothing that it sees has been in its map for a while, and the car stands: what odometry was wrong by on the little way
-// since then is a lesser evil than to stand there for good.
+// Nothing that it sees has been in its map for a while, and the car stands: what odometry was wrong by on the little
+// way since then is a lesser evil than to stand there for good.
 bool Slam::GivesUp(Time stamp, bool stands) {
-  if (lost_frames_ == 0 || !stands) lost_standing_.reset();
-  else if (!lost_standing_) lost_standing_ = stamp;
+  if (lost_frames_ == 0 || !stands)
+    lost_standing_.reset();
+  else if (!lost_standing_)
+    lost_standing_ = stamp;
   return lost_standing_ && Seconds(stamp - *lost_standing_) >= config_.restart_s;
 }
 
-// What registration adds to the way along it, as a share of the way, averaged. While the wheels slip it lags behind, but
-// each frame it takes back what the frame's own way was wrong by.
+// What registration adds to the way along it, as a share of the way, averaged. While the wheels slip it lags behind,
+// but each frame it takes back what the frame's own way was wrong by.
 void Slam::WatchWheels(const Pose& motion, const Pose& T_prior_registered) {
   const double way_m = motion.translation().norm();
   if (way_m <= 0.0) return;
@@ -119,8 +121,10 @@ void Slam::Keep(const Observation& observation, const Pose& T_map_base) {
   const bool moved = keyframes_.empty() || since.translation().norm() >= config_.keyframe_distance_m ||
                      std::abs(Yaw(since)) >= config_.keyframe_angle_rad;
   Keyframe* const former = moved ? FormerVisit(T_map_base) : nullptr;
-  if (former != nullptr) Watch(observation, T_map_base, *former);
-  else if (!moved) Watch(observation, T_map_base, keyframes_.back());
+  if (former != nullptr)
+    Watch(observation, T_map_base, *former);
+  else if (!moved)
+    Watch(observation, T_map_base, keyframes_.back());
   if (!moved || former != nullptr) return;
   local_.Insert(observation.points_base, T_map_base, path_m_);
   Keyframe keyframe{.stamp = observation.stamp,
@@ -181,7 +185,8 @@ void Slam::RecallFormer(const Pose& T_map_base) {
 // Of the key frames on the last metre and of this one, in its frame, thinned.
 std::vector<Point> Slam::SeenOfLate(const Observation& observation, const Pose& T_map_base) const {
   std::vector<Point> points = observation.points_base;
-  for (auto keyframe = keyframes_.rbegin(); keyframe != keyframes_.rend() && path_m_ - keyframe->path_m < kLate_m; ++keyframe) {
+  for (auto keyframe = keyframes_.rbegin(); keyframe != keyframes_.rend() && path_m_ - keyframe->path_m < kLate_m;
+       ++keyframe) {
     const Eigen::Isometry3f T = (T_map_base.inverse() * keyframe->T_map_base).cast<float>();
     for (Point point : keyframe->points_base) {
       point.position = T * point.position;
@@ -221,7 +226,8 @@ void Slam::Correct(const std::vector<Pose>& corrected) {
 std::vector<MapPose> Slam::trajectory() const {
   std::vector<MapPose> poses = online_;
   for (std::size_t i = 0; i < poses.size(); ++i)
-    if (steps_[i].keyframe) poses[i].T_map_base = keyframes_[*steps_[i].keyframe].T_map_base * steps_[i].T_keyframe_base;
+    if (steps_[i].keyframe)
+      poses[i].T_map_base = keyframes_[*steps_[i].keyframe].T_map_base * steps_[i].T_keyframe_base;
   return poses;
 }
 
@@ -233,7 +239,8 @@ VoxelMap Slam::BuildMap() const {
   for (const Keyframe& keyframe : keyframes_) frames.push_back({keyframe.points_base, keyframe.T_map_base});
   map.InsertAll(frames, 0.0);
   map.Forget(MovedAway(map.voxels(), keyframes_, footprint_));
-  for (const Keyframe& keyframe : keyframes_) map.Paint(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
+  for (const Keyframe& keyframe : keyframes_)
+    map.Paint(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
   return map;
 }
 

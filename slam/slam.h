@@ -16,29 +16,31 @@
 namespace merlin {
 
 struct SlamConfig {
-  VoxelMapConfig local;                 // the map a frame is registered against
+  VoxelMapConfig local;  // the map a frame is registered against
   IcpConfig icp;
   OccupancyConfig occupancy;
   LoopConfig loop;
-  double source_voxel_m = 0.08;         // [0.005, 1] frames are thinned to one point a voxel of this edge before registration
-  double local_length_m = 8.0;          // [0.5, 1000] driven length after which an unseen voxel leaves the local map
-  double keyframe_distance_m = 0.1;     // [0, 10]
-  double keyframe_angle_rad = 0.08;     // [0, 3.2]
-  double revisit_m = 0.5;               // [0, 10] where the map is known already, a former key frame this near...
-  double revisit_rad = 0.4;             // [0, 3.2] ...and so turned saves a new one
-  double correction_min_m = 0.005;      // [0, 1] a loop that moves no key frame farther leaves the map as it is
-  double odometry_share = 0.02;         // [1e-4, 1] one sigma of odometry over the way driven; guess
-  double slip_min = 0.08;               // [0.01, 1] of the way that registration takes back: the wheels slip, and are believed less; guess
-  double slip_memory_m = 0.3;           // [0.01, 10] driven over which that is averaged; guess
-  double odometry_floor_m = 0.001;      // [1e-5, 1] and at least; guess
-  double yaw_floor_rad = 0.003;         // [1e-5, 1] the heading's sigma is not believed below this; guess
-  double floor_sigma_m = 0.002;         // [1e-4, 10] the car stays on a plane: height...
-  double tilt_sigma_rad = 0.001;        // [1e-4, 3] ...roll and pitch. At 0.01 and 0.005 the map slowly climbed: 1 % too short
-  double restart_s = 3.0;               // [0.1, 1e6] lost so long while it stands, it maps on from where odometry left it
-  double start_sigma_rad = 0.004;       // [1e-4, 10] mapping waits until the heading is known this well,...
-  double start_wait_s = 2.0;            // [0, 100] ...but no longer than this
-  double map_voxel_m = 0.04;            // [0.005, 1] of the map that is written
-  int map_points_min = 2;               // [1, 1000] points a voxel of it needs
+  double source_voxel_m = 0.08;  // [0.005, 1] frames are thinned to one point a voxel of this edge before registration
+  double local_length_m = 8.0;   // [0.5, 1000] driven length after which an unseen voxel leaves the local map
+  double keyframe_distance_m = 0.1;  // [0, 10]
+  double keyframe_angle_rad = 0.08;  // [0, 3.2]
+  double revisit_m = 0.5;            // [0, 10] where the map is known already, a former key frame this near...
+  double revisit_rad = 0.4;          // [0, 3.2] ...and so turned saves a new one
+  double correction_min_m = 0.005;   // [0, 1] a loop that moves no key frame farther leaves the map as it is
+  double odometry_share = 0.02;      // [1e-4, 1] one sigma of odometry over the way driven; guess
+  double slip_min =
+      0.08;  // [0.01, 1] of the way that registration takes back: the wheels slip, and are believed less; guess
+  double slip_memory_m = 0.3;       // [0.01, 10] driven over which that is averaged; guess
+  double odometry_floor_m = 0.001;  // [1e-5, 1] and at least; guess
+  double yaw_floor_rad = 0.003;     // [1e-5, 1] the heading's sigma is not believed below this; guess
+  double floor_sigma_m = 0.002;     // [1e-4, 10] the car stays on a plane: height...
+  double tilt_sigma_rad =
+      0.001;               // [1e-4, 3] ...roll and pitch. At 0.01 and 0.005 the map slowly climbed: 1 % too short
+  double restart_s = 3.0;  // [0.1, 1e6] lost so long while it stands, it maps on from where odometry left it
+  double start_sigma_rad = 0.004;  // [1e-4, 10] mapping waits until the heading is known this well,...
+  double start_wait_s = 2.0;       // [0, 100] ...but no longer than this
+  double map_voxel_m = 0.04;       // [0.005, 1] of the map that is written
+  int map_points_min = 2;          // [1, 1000] points a voxel of it needs
 };
 
 template <class Visitor>
@@ -89,18 +91,18 @@ class Slam {
   // Registration takes back (or adds) this share of the way that the wheels report, of late.
   bool slipping() const { return std::abs(slip_) > config_.slip_min; }
   const VoxelMap& local_map() const { return local_; }
-  // A closed loop corrects poses, key frames and the local map at once. The grid follows later, so that no frame takes long:
-  // it shows former key frames where they were believed before for up to 40 frames (KeyframeGrid::kFrames; 2 s at 20 Hz),
-  // and up to 80 where the next loop is closed meanwhile. New key frames are in it at once.
+  // A closed loop corrects poses, key frames and the local map at once. The grid follows later, so that no frame takes
+  // long: it shows former key frames where they were believed before for up to 40 frames (KeyframeGrid::kFrames; 2 s at
+  // 20 Hz), and up to 80 where the next loop is closed meanwhile. New key frames are in it at once.
   const OccupancyGrid& occupancy() const { return grid_.grid(); }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const std::vector<MapPose>& online() const { return online_; }  // one pose a frame, as the car drove by it
   std::vector<MapPose> trajectory() const;                        // the same frames, as the closed loops correct them
   double path_m() const { return path_m_; }
-  int loops() const { return closer_.loops(); }                   // that join two key frames
+  int loops() const { return closer_.loops(); }  // that join two key frames
 
-  // The whole map, from all key frames, coloured: without what moved away. Of its voxels those with at least map_points_min
-  // points are meant to be used.
+  // The whole map, from all key frames, coloured: without what moved away. Of its voxels those with at least
+  // map_points_min points are meant to be used.
   VoxelMap BuildMap() const;
   // The whole grid, from all key frames as the closed loops correct them.
   OccupancyGrid BuildOccupancy() const { return GridOf(keyframes_, config_.occupancy); }
@@ -132,8 +134,8 @@ class Slam {
   LoopCloser closer_;
   std::vector<Keyframe> keyframes_;
   std::vector<MapPose> online_;
-  std::vector<Step> steps_;              // of the online poses
-  std::optional<Pose> T_map_last_;       // the newest, as corrected
+  std::vector<Step> steps_;         // of the online poses
+  std::optional<Pose> T_map_last_;  // the newest, as corrected
   RegisterResult last_;
   int lost_frames_ = 0;
   double path_m_ = 0.0, pruned_at_m_ = 0.0, slip_ = 0.0;

@@ -21,7 +21,8 @@ Rejection ReasonOfPixel(const DepthFrame& frame, std::size_t i, double lamp_ampl
 
 }  // namespace
 
-bool IsGhost(double range_m, double amplitude_e, double lamp_amplitude_e_m2, double unambiguous_m, double ghost_albedo) {
+bool IsGhost(double range_m, double amplitude_e, double lamp_amplitude_e_m2, double unambiguous_m,
+             double ghost_albedo) {
   const double implied_albedo = amplitude_e * range_m * range_m / lamp_amplitude_e_m2;
   const double share = range_m / (range_m + unambiguous_m);
   return !(implied_albedo >= ghost_albedo * share * share);

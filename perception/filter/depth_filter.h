@@ -22,10 +22,11 @@ enum class Rejection : std::uint8_t {
 };
 
 struct DepthFilterConfig {
-  double ghost_albedo = 0.9;         // [0, 1] brightest diffuse surface expected; higher rejects more. Below it a ghost passes
-  double agreement_share = 0.12;     // [0, 1] neighbours within this share of the range agree; guess: a wall seen at 11 deg
-  double agreement_floor_m = 0.05;   // [0, 1] and always within this
-  int neighbours_min = 3;            // [0, 8] of 8 that must agree; guess
+  double ghost_albedo = 0.9;  // [0, 1] brightest diffuse surface expected; higher rejects more. Below it a ghost passes
+  double agreement_share =
+      0.12;  // [0, 1] neighbours within this share of the range agree; guess: a wall seen at 11 deg
+  double agreement_floor_m = 0.05;  // [0, 1] and always within this
+  int neighbours_min = 3;           // [0, 8] of 8 that must agree; guess
 };
 
 template <class Visitor>
@@ -42,9 +43,9 @@ struct FilteredDepth {
   std::array<int, static_cast<std::size_t>(Rejection::kCount)> counts{};
 };
 
-// True if a pixel is darker than any surface at its range should be, so that it must lie an unambiguous range U farther:
-// its implied albedo amplitude r^2 / lamp is below ghost_albedo (r / (r + U))^2. Departure from a physical test of the
-// incidence angle, which one pixel does not know: very oblique dark surfaces are rejected too.
+// True if a pixel is darker than any surface at its range should be, so that it must lie an unambiguous range U
+// farther: its implied albedo amplitude r^2 / lamp is below ghost_albedo (r / (r + U))^2. Departure from a physical
+// test of the incidence angle, which one pixel does not know: very oblique dark surfaces are rejected too.
 bool IsGhost(double range_m, double amplitude_e, double lamp_amplitude_e_m2, double unambiguous_m, double ghost_albedo);
 
 // Camera flags, ghosts, then agreement with neighbours and the median (thesis eq. 4.6-4.8: amplitude, then median).

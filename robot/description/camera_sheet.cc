@@ -145,11 +145,12 @@ class SheetReader {
 };
 
 // What only one kind of camera has tells which it is.
-constexpr std::string_view kDepthKeys[] = {"fov_horizontal_deg",  "fov_vertical_deg",   "signal_e_m2_per_us",
-                                           "contrast_at_20mhz",   "contrast_corner_mhz", "low_signal_amplitude_e",
-                                           "integration_min_us",  "integration_max_us", "frequencies_mhz"};
-constexpr std::string_view kColorKeys[] = {"fx_px", "fy_px", "cx_px", "cy_px", "falloff_power",
-                                           "exposure_nominal_ms", "exposure_min_ms", "exposure_max_ms", "gain_max"};
+constexpr std::string_view kDepthKeys[] = {"fov_horizontal_deg", "fov_vertical_deg",    "signal_e_m2_per_us",
+                                           "contrast_at_20mhz",  "contrast_corner_mhz", "low_signal_amplitude_e",
+                                           "integration_min_us", "integration_max_us",  "frequencies_mhz"};
+constexpr std::string_view kColorKeys[] = {"fx_px",           "fy_px",           "cx_px",
+                                           "cy_px",           "falloff_power",   "exposure_nominal_ms",
+                                           "exposure_min_ms", "exposure_max_ms", "gain_max"};
 constexpr std::string_view kSharedKeys[] = {"width_px",   "height_px",   "rate_max_hz",
                                             "latency_ms", "full_well_e", "read_noise_e"};
 

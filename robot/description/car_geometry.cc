@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "robot/description/drivetrain_numbers.h"
-#include "robot/types/fault_list.h"
 #include "robot/types/error.h"
+#include "robot/types/fault_list.h"
 #include "robot/types/nearest_name.h"
 
 namespace merlin {

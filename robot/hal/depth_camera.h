@@ -10,8 +10,8 @@
 namespace merlin {
 
 struct DepthCameraInfo {
-  DepthCameraSheet sheet;                  // model, intrinsics, valid settings
-  Pose T_base_camera = Pose::Identity();   // optical frame
+  DepthCameraSheet sheet;                 // model, intrinsics, valid settings
+  Pose T_base_camera = Pose::Identity();  // optical frame
   double rate_hz = 0.0;
 };
 

@@ -19,7 +19,7 @@ namespace merlin {
 struct HardwareConfig {
   RealClockConfig clock;
   MicrocontrollerConfig drive;
-  std::optional<Compass3dmConfig> compass;   // not listed: the car has none
+  std::optional<Compass3dmConfig> compass;  // not listed: the car has none
   TofCameraConfig depth;
   std::optional<ColorCaptureConfig> color;
 };

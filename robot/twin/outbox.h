@@ -26,9 +26,7 @@ class Outbox {
       ++status_.missed;
     }
   }
-  void Put(Time stamp, std::future<Measurement> measurement) {
-    Put(stamp, stamp + latency_, std::move(measurement));
-  }
+  void Put(Time stamp, std::future<Measurement> measurement) { Put(stamp, stamp + latency_, std::move(measurement)); }
   void Put(Time stamp, Measurement measurement) {
     std::promise<Measurement> promise;
     promise.set_value(std::move(measurement));

@@ -44,7 +44,9 @@ class TwinDepth final : public DepthCamera {
         outbox_(FromSeconds(options.depth.sheet.latency_s)) {
     Configure(options.depth.settings);
   }
-  ~TwinDepth() override { worker_.Do([] {}).get(); }  // jobs on their way still need this
+  ~TwinDepth() override {
+    worker_.Do([] {}).get();
+  }  // jobs on their way still need this
 
   void Sample(const sim::World& world) {
     now_ = world.Now();
@@ -53,10 +55,11 @@ class TwinDepth final : public DepthCamera {
     const sim::BodyMotion camera = world.CameraMotion(info_.T_base_camera);
     // Nothing leaves before its last sub-frame is over.
     const Time out = now_ + FromSeconds(std::max(info_.sheet.latency_s, 0.5 * info_.sheet.ExposureSpan_s(settings_)));
-    outbox_.Put(now_, out, worker_.Do([this, bodies = std::move(bodies), camera, settings = settings_, stamp = now_,
-                                       index = index_++] {
-      return camera_.Expose({scene_, surroundings_, bodies, camera}, settings, stamp, index);
-    }));
+    outbox_.Put(
+        now_, out,
+        worker_.Do([this, bodies = std::move(bodies), camera, settings = settings_, stamp = now_, index = index_++] {
+          return camera_.Expose({scene_, surroundings_, bodies, camera}, settings, stamp, index);
+        }));
   }
 
   const DepthCameraInfo& Info() const override { return info_; }
@@ -94,9 +97,11 @@ class TwinColor final : public ColorCamera {
         outbox_(FromSeconds(options.color->sheet.latency_s)) {
     Configure(options.color->settings.value_or(DefaultSettings(info_.sheet)));
     // GL belongs to the thread that draws.
-    worker_.Do([this, model = world.model(), &color = *options.color, seed = options.seed] {
-             camera_ = std::make_unique<sim::ColorCamera>(model, color.sheet, color.gl, seed, color.motion_blur);
-           }).get();
+    worker_
+        .Do([this, model = world.model(), &color = *options.color, seed = options.seed] {
+          camera_ = std::make_unique<sim::ColorCamera>(model, color.sheet, color.gl, seed, color.motion_blur);
+        })
+        .get();
   }
   ~TwinColor() override {
     worker_.Do([this] { camera_.reset(); }).get();
@@ -200,25 +205,29 @@ sim::WorldOptions WorldOf(const TwinOptions& options) {
 }
 
 // On a single core as well: there three threads take no more processor time than one.
-int ThreadsOf(const TwinOptions& options) {
-  return options.threads > 0 ? options.threads : options.color ? 3 : 2;
-}
+int ThreadsOf(const TwinOptions& options) { return options.threads > 0 ? options.threads : options.color ? 3 : 2; }
 
 }  // namespace
 
 struct Twin::Impl final : public Clock {
   explicit Impl(const TwinOptions& options)
-      : end(options.end), world(WorldOf(options)), depth_worker(ThreadsOf(options) > 1), color_worker(ThreadsOf(options) > 2),
-        depth(options, world, depth_worker), drive(world, options.drive_rate_hz) {
+      : end(options.end),
+        world(WorldOf(options)),
+        depth_worker(ThreadsOf(options) > 1),
+        color_worker(ThreadsOf(options) > 2),
+        depth(options, world, depth_worker),
+        drive(world, options.drive_rate_hz) {
     // With two threads the cameras share one beside the caller's.
     if (options.color) color.emplace(options, world, ThreadsOf(options) > 2 ? color_worker : depth_worker);
     if (options.compass) compass.emplace(options);
     if (world.pan() != nullptr)
-      pan.emplace(world, options.drive_rate_hz, [this](double angle_rad) { world.pan()->Send(angle_rad); },
-                  [this] { return world.pan()->Read_rad(world.data()); });
+      pan.emplace(
+          world, options.drive_rate_hz, [this](double angle_rad) { world.pan()->Send(angle_rad); },
+          [this] { return world.pan()->Read_rad(world.data()); });
     if (world.stand() != nullptr)
-      stand.emplace(world, options.drive_rate_hz, [this](double angle_rad) { world.stand()->Send(angle_rad); },
-                    [this] { return world.stand()->angle_rad(); });
+      stand.emplace(
+          world, options.drive_rate_hz, [this](double angle_rad) { world.stand()->Send(angle_rad); },
+          [this] { return world.stand()->angle_rad(); });
     Sample();
   }
 

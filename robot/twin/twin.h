@@ -29,7 +29,7 @@ struct TwinOptions {
   struct Color {
     ColorCameraSheet sheet;
     double rate_hz = 10.0;
-    sim::Gl gl = sim::Gl::kAuto;            // not kOff
+    sim::Gl gl = sim::Gl::kAuto;              // not kOff
     std::optional<ColorSettings> settings{};  // none: the sheet's, automatic
     bool motion_blur = false;
   };
@@ -45,7 +45,7 @@ struct TwinOptions {
   std::optional<Color> color;
   std::optional<Compass> compass;
   double drive_rate_hz = 50.0;
-  Time end{0};      // WaitUntil returns false from here on
+  Time end{0};  // WaitUntil returns false from here on
   // 1: everything on the caller's thread; 2: the cameras share one beside it; from 3 on each has its own. 0: as many as
   // there are cameras, beside the caller's. The same bits for any number.
   int threads = 0;

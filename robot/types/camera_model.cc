@@ -7,7 +7,7 @@
 namespace merlin {
 namespace {
 
-constexpr double kTolerance = 1e-13;     // of the inverse, relative
+constexpr double kTolerance = 1e-13;       // of the inverse, relative
 constexpr double kFoldDeterminant = 0.02;  // a field squeezed to a fiftieth of its area is as good as folded
 
 // d Distort / d xy.
@@ -22,8 +22,8 @@ Eigen::Matrix2d Jacobian(const CameraModel& camera, const Eigen::Vector2d& xy) {
   return J;
 }
 
-// Newton's method, its step halved until it comes nearer without crossing a fold (determinant 0). From the axis outwards
-// this stays in the field around the axis.
+// Newton's method, its step halved until it comes nearer without crossing a fold (determinant 0). From the axis
+// outwards this stays in the field around the axis.
 Eigen::Vector2d Invert(const CameraModel& camera, const Eigen::Vector2d& wanted, Eigen::Vector2d xy) {
   const Eigen::Vector2d none = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::Vector2d missing = wanted - camera.Distort(xy);
@@ -47,7 +47,8 @@ Eigen::Vector2d Invert(const CameraModel& camera, const Eigen::Vector2d& wanted,
 Eigen::Vector2d CameraModel::Distort(const Eigen::Vector2d& xy) const {
   const double x = xy.x(), y = xy.y(), r2 = xy.squaredNorm();
   const double radial = 1.0 + r2 * (k1 + r2 * k2);
-  return {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x), y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
+  return {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
+          y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
 }
 
 Eigen::Vector2d CameraModel::Undistort(const Eigen::Vector2d& distorted_xy) const {

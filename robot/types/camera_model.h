@@ -1,4 +1,5 @@
-// The pinhole camera with OpenCV's lens distortion, and its pixel convention: (0, 0) is the centre of the upper left pixel.
+// The pinhole camera with OpenCV's lens distortion, and its pixel convention: (0, 0) is the centre of the upper left
+// pixel.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,7 +37,8 @@ struct CameraModel {
   // Pixel of a point in the optical frame; z > 0. NaN beyond the angle at which the lens model folds over.
   Eigen::Vector2d Project(const Eigen::Vector3d& point_optical) const {
     if (!Distorts())
-      return {fx_px * point_optical.x() / point_optical.z() + cx_px, fy_px * point_optical.y() / point_optical.z() + cy_px};
+      return {fx_px * point_optical.x() / point_optical.z() + cx_px,
+              fy_px * point_optical.y() / point_optical.z() + cy_px};
     return ProjectDistorted(point_optical.head<2>() / point_optical.z());
   }
 

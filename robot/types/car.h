@@ -1,4 +1,5 @@
-// The car as plain data, as models/merlin/merlin.urdf says it. The twin builds a body of it, the stack takes its frames.
+// The car as plain data, as models/merlin/merlin.urdf says it. The twin builds a body of it, the stack takes its
+// frames.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,32 +20,33 @@ namespace merlin {
 // Triangles of one colour, out of a mesh file; in metres, z up.
 struct CarMesh {
   std::vector<Eigen::Vector3f> vertices;
-  std::vector<Eigen::Vector3i> triangles;     // three places in vertices each, counter-clockwise from outside
-  std::optional<std::array<float, 4>> rgba;   // where the file says it
+  std::vector<Eigen::Vector3i> triangles;    // three places in vertices each, counter-clockwise from outside
+  std::optional<std::array<float, 4>> rgba;  // where the file says it
 };
 
 struct CarShape {
   enum class Kind { kBox, kCylinder, kSphere, kMesh };
   Kind kind = Kind::kBox;
-  Eigen::Vector3d size_m{0, 0, 0};  // box: full edges; cylinder: radius, length (along z), 0; sphere: radius, 0, 0; mesh: scale
+  Eigen::Vector3d size_m{
+      0, 0, 0};  // box: full edges; cylinder: radius, length (along z), 0; sphere: radius, 0, 0; mesh: scale
   std::filesystem::path mesh_file;  // absolute; what it holds:
   std::shared_ptr<const CarMesh> mesh;
   Pose T_link_shape = Pose::Identity();
-  std::string material;             // a name in materials.yaml; may be empty
+  std::string material;  // a name in materials.yaml; may be empty
   std::array<float, 4> rgba{0.5f, 0.5f, 0.5f, 1.0f};
 };
 
 struct CarLink {
   enum class Joint { kFixed, kRevolute, kContinuous, kPrismatic };
   std::string name;
-  std::string parent;                          // empty for the root, base_link
+  std::string parent;  // empty for the root, base_link
   std::string joint_name;
   Joint joint = Joint::kFixed;
-  Pose T_parent_link = Pose::Identity();       // at joint angle 0
-  Eigen::Vector3d axis{1, 0, 0};               // of the joint, in the link's frame
+  Pose T_parent_link = Pose::Identity();            // at joint angle 0
+  Eigen::Vector3d axis{1, 0, 0};                    // of the joint, in the link's frame
   double joint_min_rad = 0.0, joint_max_rad = 0.0;  // of a revolute joint
   double joint_speed_max_rad_s = 0.0;               // of a revolute joint
-  double mass_kg = 0.0;                        // 0: a frame only
+  double mass_kg = 0.0;                             // 0: a frame only
   Pose T_link_inertial = Pose::Identity();
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  // about the inertial frame
   std::vector<CarShape> visual, collision;
@@ -52,9 +54,9 @@ struct CarLink {
 
 // Motor, gear and encoder: the <drivetrain> element of the URDF.
 struct Drivetrain {
-  double gear = 0.0;                           // motor turns a wheel turn
+  double gear = 0.0;  // motor turns a wheel turn
   int encoder_counts_per_motor_turn = 0;
-  double motor_constant_v_s = 0.0;             // K: V per rad/s and N m per A
+  double motor_constant_v_s = 0.0;  // K: V per rad/s and N m per A
   double resistance_ohm = 0.0;
   double rotor_inertia_kg_m2 = 0.0;
   double voltage_max_v = 0.0;
@@ -66,17 +68,17 @@ struct Drivetrain {
 
 // A driven wheel. Its joint's axis points to the left: positive turns roll the car forwards.
 struct CarWheel {
-  std::size_t link = 0;                        // its place in links
-  Pose T_link_tyre = Pose::Identity();         // the tyre's middle, z along the axle
-  double width_m = 0.0;                        // of the tyre
+  std::size_t link = 0;                 // its place in links
+  Pose T_link_tyre = Pose::Identity();  // the tyre's middle, z along the axle
+  double width_m = 0.0;                 // of the tyre
 };
 
 // What turns both cameras about the vertical, where a car has it.
 struct CarPan {
-  std::size_t link = 0;                    // its place in links; the cameras hang below it
-  Pose T_base_pan = Pose::Identity();      // at angle 0, z up along the axis
+  std::size_t link = 0;                // its place in links; the cameras hang below it
+  Pose T_base_pan = Pose::Identity();  // at angle 0, z up along the axis
   double slew_rad_s = 0.0;
-  bool moves = false;                      // else it is held ahead, as MERLIN's cameras are
+  bool moves = false;  // else it is held ahead, as MERLIN's cameras are
 
   // The pose of a camera, given the one at angle 0 (ahead); positive to the left.
   Pose Turned(const Pose& T_base_camera, double angle_rad) const {
@@ -91,23 +93,24 @@ struct CarDescription {
   std::filesystem::path file;         // its URDF; empty: made in code
   std::vector<std::string> warnings;  // one sentence each, of what its user should know
   std::vector<CarLink> links;  // parents before children; [0] is the base: on the ground below the rear axle's middle
-  std::array<CarWheel, 4> wheels{};        // front left, front right, rear left, rear right
-  std::array<std::size_t, 2> knuckles{};   // places in links: what steers the front wheels, left, right; positive to the left
-  std::optional<CarPan> pan;               // none: the cameras are fixed
+  std::array<CarWheel, 4> wheels{};  // front left, front right, rear left, rear right
+  std::array<std::size_t, 2>
+      knuckles{};             // places in links: what steers the front wheels, left, right; positive to the left
+  std::optional<CarPan> pan;  // none: the cameras are fixed
   // Derived from the links, so that they cannot disagree with them:
   double wheelbase_m = 0.0;       // means of left and right; the links stand as they are drawn
   double track_m = 0.0;           // between the wheels' middles, mean of front and rear
   double steering_track_m = 0.0;  // between the two steering axes; they may stand beside the wheels' middles
   double wheel_radius_m = 0.0;
-  double steering_max_rad = 0.0;     // of the virtual wheel midway between the front ones, as the knuckles' limits allow
+  double steering_max_rad = 0.0;  // of the virtual wheel midway between the front ones, as the knuckles' limits allow
   double steering_offset_rad = 0.0;  // of the wheels from what the servo reports; only a calibration knows it
   Drivetrain drivetrain;
   Pose T_base_depth = Pose::Identity();  // optical frames, looking ahead
   std::optional<Pose> T_base_color;      // none: the car has no colour camera
   std::optional<Pose> T_base_compass;    // none: it has no compass
 
-  // Of a turntable the car stands on: through the base's origin, so that a turn moves no true pose from its place. (On a
-  // small circle the judge would take the noise of the path for a turn of the map.)
+  // Of a turntable the car stands on: through the base's origin, so that a turn moves no true pose from its place. (On
+  // a small circle the judge would take the noise of the path for a turn of the map.)
   Pose T_base_stand() const { return Pose::Identity(); }
 
   double MetresPerCount() const {  // of the four-wheel mean's path

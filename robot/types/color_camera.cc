@@ -9,7 +9,8 @@ namespace {
 void RequireWithin(const ColorCameraSheet& sheet, const std::string& what, const std::string& unit, double value,
                    double min, double max) {
   if (!(value >= min && value <= max))
-    throw InputError(sheet.name, "invalid " + what, NumberText(min) + " to " + NumberText(max) + unit, NumberText(value) + unit);
+    throw InputError(sheet.name, "invalid " + what, NumberText(min) + " to " + NumberText(max) + unit,
+                     NumberText(value) + unit);
 }
 
 }  // namespace

@@ -25,10 +25,10 @@ struct ColorCameraSheet {
   std::string name;
   CameraModel camera{};
   double rate_max_hz = 0.0;
-  double latency_s = 0.0;           // from mid-exposure to the stack
-  double full_well_e = 0.0;         // electrons at which a pixel clips; white (255) at gain 1
-  double read_noise_e = 0.0;        // one sigma
-  double falloff_power = 0.0;       // illumination falls off with cos^power of the angle to the axis; 4: natural vignetting
+  double latency_s = 0.0;      // from mid-exposure to the stack
+  double full_well_e = 0.0;    // electrons at which a pixel clips; white (255) at gain 1
+  double read_noise_e = 0.0;   // one sigma
+  double falloff_power = 0.0;  // illumination falls off with cos^power of the angle to the axis; 4: natural vignetting
   double exposure_nominal_s = 0.0;  // shows a normally lit room at gain 1 as it is
   double exposure_min_s = 0.0;
   double exposure_max_s = 0.0;

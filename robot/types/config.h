@@ -20,7 +20,7 @@ struct Range {
 struct Fault {
   std::string field;  // dotted path: "pilot.speed_m_s"
   std::string value;
-  std::string rule;   // "in [0, 2]"
+  std::string rule;  // "in [0, 2]"
 };
 
 namespace detail {

@@ -10,7 +10,8 @@ namespace {
 
 std::string ValidFrequencies_mhz(const DepthCameraSheet& sheet) {
   std::string list;
-  for (const double frequency_hz : sheet.frequencies_hz) list += (list.empty() ? "" : " or ") + NumberText(frequency_hz * 1e-6);
+  for (const double frequency_hz : sheet.frequencies_hz)
+    list += (list.empty() ? "" : " or ") + NumberText(frequency_hz * 1e-6);
   return list;
 }
 
@@ -29,9 +30,10 @@ double NearestFrequency_hz(const DepthCameraSheet& sheet, double frequency_hz) {
 
 void CheckSettings(const DepthCameraSheet& sheet, const DepthSettings& settings) {
   if (!(settings.integration_s >= sheet.integration_min_s && settings.integration_s <= sheet.integration_max_s))
-    throw InputError(sheet.name, "invalid integration time",
-                     NumberText(sheet.integration_min_s * 1e6) + " to " + NumberText(sheet.integration_max_s * 1e6) + " us",
-                     NumberText(settings.integration_s * 1e6) + " us");
+    throw InputError(
+        sheet.name, "invalid integration time",
+        NumberText(sheet.integration_min_s * 1e6) + " to " + NumberText(sheet.integration_max_s * 1e6) + " us",
+        NumberText(settings.integration_s * 1e6) + " us");
   CheckFrequency(sheet, settings.frequency_hz);
   if (settings.second_frequency_hz == 0.0) return;
   CheckFrequency(sheet, settings.second_frequency_hz);

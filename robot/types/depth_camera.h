@@ -83,8 +83,8 @@ DepthSettings NearestSettings(const DepthCameraSheet& sheet, const DepthSettings
 
 // One measurement. Images are row-major, width x height, upper left first, as the camera sees.
 struct DepthFrame {
-  Time stamp{0};           // middle of the whole exposure (four sub-frames)
-  std::uint64_t index = 0; // counts frames from the start of the run
+  Time stamp{0};            // middle of the whole exposure (four sub-frames)
+  std::uint64_t index = 0;  // counts frames from the start of the run
   DepthSettings settings;
   int width = 0;
   int height = 0;
@@ -92,7 +92,7 @@ struct DepthFrame {
   std::vector<float> amplitude;         // electrons: sqrt(I^2 + Q^2) / 2 = C N_s; with two frequencies the first one's
   std::vector<std::uint8_t> intensity;  // mean of a sub-frame's taps, 255 at the full well
   std::vector<std::uint8_t> flags;      // DepthFlag bits
-  std::vector<float> phase_images;      // taps [e], sub-frame by sub-frame, image of A then of B; empty unless asked for
+  std::vector<float> phase_images;  // taps [e], sub-frame by sub-frame, image of A then of B; empty unless asked for
 
   std::size_t size() const { return range_m.size(); }
 };

@@ -1,6 +1,7 @@
 // How a model of time-of-flight camera errs: what the simulated camera does to its measurements and the stack must not
 // know. A sheet (models/cameras/<name>.yaml, key `errors`) lists what differs from these defaults. Origins: (g)
-// engineering guess, (m) recalled from the named paper; every one is a starting value for a calibration of the real camera.
+// engineering guess, (m) recalled from the named paper; every one is a starting value for a calibration of the real
+// camera.
 #pragma once
 
 #include "robot/types/config.h"
@@ -14,23 +15,24 @@ struct DepthCameraErrors {
   double wiggling_residual_m = 0.004;  // (g) rms
 
   // Converter, response.
-  double adc_bits = 14.0;         // (g) 12 to 14
-  double adc_black_dn = 200.0;    // (g) code of an empty tap
-  double response_cubic = 0.02;   // (g) tap' = tap (1 - this (tap / full well)^2)
-  double dark_e_per_us = 0.05;    // (g) both taps
+  double adc_bits = 14.0;        // (g) 12 to 14
+  double adc_black_dn = 200.0;   // (g) code of an empty tap
+  double response_cubic = 0.02;  // (g) tap' = tap (1 - this (tap / full well)^2)
+  double dark_e_per_us = 0.05;   // (g) both taps
 
   // Suppression of background illumination (Schmidt and Jaehne, LNCS 5742, 2009).
-  double sbi_onset = 0.5;   // (g) works from this filling of the emptier tap on, in full wells
-  double sbi_max = 50.0;    // (g) takes away at most this, in full wells
-  double sbi_noise = 1.5;   // (g) variance it adds to a tap, per electron taken away
+  double sbi_onset = 0.5;  // (g) works from this filling of the emptier tap on, in full wells
+  double sbi_max = 50.0;   // (g) takes away at most this, in full wells
+  double sbi_noise = 1.5;  // (g) variance it adds to a tap, per electron taken away
 
   // Ambient light.
-  double lamp_w_per_sr = 2.0;       // (g) radiant intensity on the axis, both boards, mean over the modulation
-  double filter_nm = 60.0;          // (g) width of the band filter
-  double ambient_bias_m = 0.0075;   // (g) range error at a full well of ambient electrons: the taps are not twins
+  double lamp_w_per_sr = 2.0;      // (g) radiant intensity on the axis, both boards, mean over the modulation
+  double filter_nm = 60.0;         // (g) width of the band filter
+  double ambient_bias_m = 0.0075;  // (g) range error at a full well of ambient electrons: the taps are not twins
 
   // Intensity-related error: what response and scatter do not explain (Lindner and Kolb, SPIE 6764, 2007).
-  double intensity_bias_m = -0.02;  // (g) towards amplitude 0; falls with exp(-amplitude / that of albedo 0.2 at 3 m, 1 ms)
+  double intensity_bias_m =
+      -0.02;  // (g) towards amplitude 0; falls with exp(-amplitude / that of albedo 0.2 at 3 m, 1 ms)
 
   // Fixed pattern: of the phase before and after calibration, of gain and offset of the taps.
   double pattern_white_m = 0.007;      // (m) pixel to pixel, one sigma

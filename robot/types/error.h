@@ -11,7 +11,8 @@ class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   // where: "scenarios/x.yaml:12" or "--seed"; expected and got may be empty.
-  InputError(const std::string& where, const std::string& what, const std::string& expected = "", const std::string& got = "")
+  InputError(const std::string& where, const std::string& what, const std::string& expected = "",
+             const std::string& got = "")
       : std::runtime_error(where + ": " + what + (expected.empty() ? "" : "; expected " + expected) +
                            (got.empty() ? "" : ", got " + got)) {}
 };

@@ -29,7 +29,8 @@ class FaultList {
   void Add(const std::string& fault) {
     constexpr std::size_t kShown = 12;
     if (++count_ <= kShown) text_ += (text_.empty() ? "" : "\n") + fault;
-    if (count_ > kShown) more_ = "\n" + name_ + (name_.empty() ? "and " : ": and ") + std::to_string(count_ - kShown) + " more";
+    if (count_ > kShown)
+      more_ = "\n" + name_ + (name_.empty() ? "and " : ": and ") + std::to_string(count_ - kShown) + " more";
   }
 
   bool empty() const { return count_ == 0; }

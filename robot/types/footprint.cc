@@ -53,7 +53,8 @@ Footprint FootprintOf(const CarDescription& car) {
     footprint.half_width_m = std::max(footprint.half_width_m, std::abs(middle.y()) + reach.y());
   }
   for (const auto& [middle, reach] : extents)
-    if (2.0 * reach.y() >= footprint.half_width_m) footprint.height_m = std::max(footprint.height_m, middle.z() + reach.z());
+    if (2.0 * reach.y() >= footprint.half_width_m)
+      footprint.height_m = std::max(footprint.height_m, middle.z() + reach.z());
   return footprint;
 }
 

@@ -8,7 +8,8 @@
 
 namespace merlin {
 
-// Attitude of the body: rotation about x, y, z (roll, pitch, yaw; R = Rz Ry Rx), yaw counter-clockwise from the world's x axis.
+// Attitude of the body: rotation about x, y, z (roll, pitch, yaw; R = Rz Ry Rx), yaw counter-clockwise from the world's
+// x axis.
 struct CompassReading {
   Time stamp{0};
   double roll_rad = 0.0;
@@ -30,7 +31,7 @@ struct DriveState {
   double steering_rad = 0.0;        // of the virtual middle front wheel, as the servo reports it
   double current_a = 0.0;
   double battery_v = 0.0;
-  bool expired = false;             // the last command has expired: the motor is braked
+  bool expired = false;  // the last command has expired: the motor is braked
 };
 
 // Of what turns the cameras or the whole car.

@@ -33,7 +33,8 @@ Eigen::Matrix3d LeftJacobianSo3(const Eigen::Vector3d& w) {
   const double angle = w.norm();
   const Eigen::Matrix3d hat = Hat(w);
   const double a = angle < 1e-4 ? 0.5 - angle * angle / 24.0 : (1.0 - std::cos(angle)) / (angle * angle);
-  const double b = angle < 1e-2 ? 1.0 / 6.0 - angle * angle / 120.0 : (angle - std::sin(angle)) / (angle * angle * angle);
+  const double b =
+      angle < 1e-2 ? 1.0 / 6.0 - angle * angle / 120.0 : (angle - std::sin(angle)) / (angle * angle * angle);
   return Eigen::Matrix3d::Identity() + a * hat + b * hat * hat;
 }
 

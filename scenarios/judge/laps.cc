@@ -8,7 +8,7 @@
 namespace merlin {
 namespace {
 
-constexpr double kAtCentre_m = 0.1;      // nearer than this the car stands over the centre
+constexpr double kAtCentre_m = 0.1;       // nearer than this the car stands over the centre
 constexpr double kRounding_turns = 1e-9;  // a path that ends where it began has crossed the line
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }

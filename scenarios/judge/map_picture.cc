@@ -20,7 +20,8 @@ constexpr double kCeiling_m = 2.5;
 constexpr double kFloor_m = 0.1;  // what is lower is drawn pale: it is the walls that make a map
 
 // Blue, green, red.
-const cv::Scalar kPaper(255, 255, 255), kGrid(230, 232, 232), kInk(45, 40, 38), kPale(120, 115, 110), kFloorColor(214, 220, 208);
+const cv::Scalar kPaper(255, 255, 255), kGrid(230, 232, 232), kInk(45, 40, 38), kPale(120, 115, 110),
+    kFloorColor(214, 220, 208);
 const cv::Scalar kPlanColor(0, 0, 0), kTruthColor(60, 160, 250), kEstimateColor(35, 20, 190);
 
 // Floor pale, then low: green, high: dark blue (a part of viridis).
@@ -82,7 +83,8 @@ void DrawGrid(Sheet& sheet, double step_m) {
 void DrawCloud(Sheet& sheet, std::vector<Eigen::Vector3d> points, const cv::Mat& ramp) {
   std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
   for (const Eigen::Vector3d& p : points)
-    if (sheet.Shows(p.head<2>())) sheet.Speck(sheet.Pixel(p.head<2>()), p.z() < kFloor_m ? 1.5 : 3.0, HeightColor(ramp, p.z()));
+    if (sheet.Shows(p.head<2>()))
+      sheet.Speck(sheet.Pixel(p.head<2>()), p.z() < kFloor_m ? 1.5 : 3.0, HeightColor(ramp, p.z()));
 }
 
 void DrawStart(Sheet& sheet, const Trajectory& truth) {

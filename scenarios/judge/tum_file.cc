@@ -46,8 +46,8 @@ std::vector<Match> Matches(const Trajectory& shorter, const Trajectory& longer, 
 void Warn(TumFile& file, const std::string& name, const std::vector<std::size_t>& lines, const char* one,
           const char* many, const char* what) {
   if (!lines.empty())
-    file.warnings.push_back(fmt::format("{}: {} {} {} ({})", name, lines.size(), lines.size() == 1 ? one : many, what,
-                                        LinesOf(lines)));
+    file.warnings.push_back(
+        fmt::format("{}: {} {} {} ({})", name, lines.size(), lines.size() == 1 ? one : many, what, LinesOf(lines)));
 }
 
 }  // namespace

@@ -160,8 +160,7 @@ std::vector<float> AmbientOfPixels(const RayScene& scene, const Surroundings& ar
     const int geom = extra[i].hit.geom;
     const float there =
         geom < 0 ? sky : lit[i] * static_cast<float>(around.material[static_cast<std::size_t>(geom)].nir_albedo);
-    ambient[optics.PixelOf(extra[i].sub_ray)] +=
-        extra[i].ambient_share * there / static_cast<float>(optics.per_pixel);
+    ambient[optics.PixelOf(extra[i].sub_ray)] += extra[i].ambient_share * there / static_cast<float>(optics.per_pixel);
   }
   return ambient;
 }

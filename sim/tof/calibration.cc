@@ -85,7 +85,8 @@ double WigglingCorrection::operator()(double phase_rad) const {
 double WigglingCorrection::Slope(double phase_rad) const {
   constexpr double kStep_rad = 2.0 * std::numbers::pi / kTableSize;
   const double middle_rad = phase_rad - 2.0 * std::numbers::pi * std::floor(phase_rad / (2.0 * std::numbers::pi));
-  const double low_rad = std::max(0.0, middle_rad - kStep_rad), high_rad = std::min(2.0 * std::numbers::pi, middle_rad + kStep_rad);
+  const double low_rad = std::max(0.0, middle_rad - kStep_rad),
+               high_rad = std::min(2.0 * std::numbers::pi, middle_rad + kStep_rad);
   return ((*this)(high_rad) - (*this)(low_rad)) / (high_rad - low_rad);
 }
 

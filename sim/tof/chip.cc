@@ -93,7 +93,8 @@ bool Inconsistent(const Taps taps[4], double amplitude_e, double read_noise_e) {
     suppression_e2 += 0.25 * 2.0 * taps[k].suppression_variance_e2;
   }
   const double residual_e = std::max(std::abs(D(0) + D(2)), std::abs(D(1) + D(3)));
-  const double sigma_e = std::sqrt(2.0 * (std::max(0.0, collected_e) + suppression_e2 + 2.0 * read_noise_e * read_noise_e));
+  const double sigma_e =
+      std::sqrt(2.0 * (std::max(0.0, collected_e) + suppression_e2 + 2.0 * read_noise_e * read_noise_e));
   return residual_e > 0.4 * 2.0 * amplitude_e && residual_e > 4.0 * sigma_e;
 }
 

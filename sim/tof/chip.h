@@ -27,8 +27,8 @@ struct PixelTraits {
 
 struct Taps {
   double a_e = 0.0, b_e = 0.0;
-  bool saturated = false;     // one of them reached the full well
-  double suppressed_e = 0.0;  // background that was taken away from each, ...
+  bool saturated = false;                // one of them reached the full well
+  double suppressed_e = 0.0;             // background that was taken away from each, ...
   double suppression_variance_e2 = 0.0;  // ... and what noise that brought
 };
 

@@ -8,7 +8,6 @@
 namespace merlin::sim {
 namespace {
 
-
 double Wrapped(double range_m, double period_m) {
   const double wrapped = range_m - period_m * std::floor(range_m / period_m);
   return wrapped < period_m ? wrapped : 0.0;

@@ -153,7 +153,8 @@ SubFrameTracer::SubFrameTracer(const RayScene& scene, const Optics& optics, cons
     origin_world_[i] = T_world_camera.translation().cast<float>();
     for (const int number : plan.faces) {
       const Face& face = scene.faces()[static_cast<std::size_t>(number)];
-      const float distance_m = face.normal.dot(origin_world_[i]) - face.offset_m, side = distance_m < 0.0f ? -1.0f : 1.0f;
+      const float distance_m = face.normal.dot(origin_world_[i]) - face.offset_m,
+                  side = distance_m < 0.0f ? -1.0f : 1.0f;
       seen_[static_cast<std::size_t>(number)][i] = {side * (R_world_camera_[i].transpose() * face.normal),
                                                     side * distance_m};
     }

@@ -18,8 +18,8 @@ struct MidHits {
   explicit MidHits(const Optics& optics) : grid(optics) {}
   Pose T_world_camera;
   SubGrid grid;
-  std::vector<Ray> rays;     // [sub-ray], world
-  std::vector<RayHit> hits;  // the same
+  std::vector<Ray> rays;            // [sub-ray], world
+  std::vector<RayHit> hits;         // the same
   std::vector<std::uint8_t> mixed;  // [pixel] its sub-rays do not all meet one plane of one geom
 
   Eigen::Vector3f Point(std::size_t i) const { return rays[i].origin + hits[i].range_m * rays[i].direction; }
@@ -52,8 +52,8 @@ struct SubFrame {
   double Middle_s() const { return begin_s + 0.5 * integration_s; }
 };
 
-// What the sub-frames need not trace: sub-rays that in the mid-exposure are far enough from any edge are taken from their
-// plane.
+// What the sub-frames need not trace: sub-rays that in the mid-exposure are far enough from any edge are taken from
+// their plane.
 struct FramePlan {
   struct Stretch {
     std::size_t begin, end;  // in the row: neighbours with one instant and one face
@@ -77,7 +77,8 @@ class SubFrameTracer {
   void Row(int row, RowHits& hits, RowRays& rays) const;
 
  private:
-  // A face as seen at one instant: normal in the optical frame, towards the lens, and the lens' distance from the plane.
+  // A face as seen at one instant: normal in the optical frame, towards the lens, and the lens' distance from the
+  // plane.
   struct SeenFace {
     Eigen::Vector3f normal_camera{0, 0, 0};
     float distance_m = 0.0f;

@@ -53,7 +53,8 @@ bool LightModel::Moves(const TofView& view) const {
 }
 
 // What stands can be taken from its plane where no edge comes near within the exposure.
-std::vector<std::uint8_t> LightModel::Calm(const TofView& view, const MidHits& mid, const DepthSettings& settings) const {
+std::vector<std::uint8_t> LightModel::Calm(const TofView& view, const MidHits& mid,
+                                           const DepthSettings& settings) const {
   if (view.scene.Moves(view.bodies)) return {};
   float nearest_m = 100.0f;
   for (const RayHit& hit : mid.hits)
@@ -91,11 +92,11 @@ std::vector<LightImages> LightModel::Expose(const TofView& view, const DepthSett
     const double frequency_hz = i < 4 ? settings.frequency_hz : settings.second_frequency_hz;
     if (effects_.multipath && i % 4 == 0) still.bounce = Bounce(view, still, frequency_hz, settings.integration_s);
     if (moves) view.scene.Update(view.bodies, sub_frames[i].Middle_s());
-        std::optional<SubFrameTracer> tracer;
+    std::optional<SubFrameTracer> tracer;
     if (moves) tracer.emplace(view.scene, optics_, plan, view.camera, sub_frames[i]);
-    images.push_back(Expose(still,
-                            {tracer ? &*tracer : nullptr, frequency_hz, settings.integration_s, static_cast<int>(i % 4)},
-                            pattern, drift));
+    images.push_back(
+        Expose(still, {tracer ? &*tracer : nullptr, frequency_hz, settings.integration_s, static_cast<int>(i % 4)},
+               pattern, drift));
   }
   if (effects_.scatter) {
     ParallelFor(2 * settings.sub_frames(), threads_, [&](int i) {
@@ -139,18 +140,19 @@ void LightModel::ExposeRow(const Still& still, const Now& now, const FixedPatter
     room.ambient_e[u] = 0.0f;
   }
   if (!still.ambient.empty()) {
-    const float gain = static_cast<float>(K_T * errors_.filter_nm / errors_.lamp_w_per_sr);  // [e] of albedo times irradiance
-    for (std::size_t u = 0; u < width; ++u) room.ambient_e[u] = gain * optics_.lens[first + u] * still.ambient[first + u];
+    const float gain =
+        static_cast<float>(K_T * errors_.filter_nm / errors_.lamp_w_per_sr);  // [e] of albedo times irradiance
+    for (std::size_t u = 0; u < width; ++u)
+      room.ambient_e[u] = gain * optics_.lens[first + u] * still.ambient[first + u];
   }
   AddOffsets(contrast, room);
   for (std::size_t u = 0; u < width; ++u)
     room.offset[u] = static_cast<float>(wave_number) *
-                         (room.offset[u] + pattern.range_m[first + u] + static_cast<float>(drift.range_m));
+                     (room.offset[u] + pattern.range_m[first + u] + static_cast<float>(drift.range_m));
   light.Turn(room.offset);
   const std::array<float, 3> weights{1.0f, effects_.wiggling ? static_cast<float>(errors_.harmonic_3) : 0.0f,
                                      effects_.wiggling ? static_cast<float>(errors_.harmonic_5) : 0.0f};
-  light.Correlate(now.k, weights, static_cast<float>(contrast),
-                  std::span(images.correlation_e).subspan(first, width));
+  light.Correlate(now.k, weights, static_cast<float>(contrast), std::span(images.correlation_e).subspan(first, width));
   for (std::size_t u = 0; u < width; ++u) images.total_e[first + u] = light.total_e[u] + room.ambient_e[u];
 }
 

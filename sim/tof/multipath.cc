@@ -33,8 +33,8 @@ struct Receiver {
   }
 };
 
-Lights LightsOf(const RayScene& scene, const Optics& optics, const Pose& T_world_camera,
-                          std::span<const float> albedo, const MultipathGrid& grid) {
+Lights LightsOf(const RayScene& scene, const Optics& optics, const Pose& T_world_camera, std::span<const float> albedo,
+                const MultipathGrid& grid) {
   const double reach_x = optics.lamp_reach * optics.tan_half_x, reach_y = optics.lamp_reach * optics.tan_half_y;
   const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
   const Eigen::Vector3f origin = T_world_camera.translation().cast<float>();
@@ -93,7 +93,8 @@ Phasors Gather(const RayScene& scene, const Lights& lights, const Eigen::Vector3
     MERLIN_SIDE_BY_SIDE
     for (std::size_t i = 0; i < count; ++i) {
       const float dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz, squared = dx * dx + dy * dy + dz * dz;
-      const float here = nx * dx + ny * dy + nz * dz, there = -(lx[i] * dx + ly[i] * dy + lz[i] * dz);  // times distance
+      const float here = nx * dx + ny * dy + nz * dz,
+                  there = -(lx[i] * dx + ly[i] * dy + lz[i] * dz);  // times distance
       distance[i] = std::sqrt(squared);
       const float least = 1e-4f * distance[i];
       const float form = power[i] * here * there / (squared * (squared + disc_m2[i]));

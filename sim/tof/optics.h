@@ -37,15 +37,15 @@ struct Optics {
   double Lobe(double slope_x, double slope_y) const;
 
   int width, height;
-  int per_pixel;                    // sub-rays: 9 or 1
+  int per_pixel;                           // sub-rays: 9 or 1
   std::vector<std::size_t> first_sub_ray;  // [pixel]
-  std::vector<float> x, y, z;       // [sub-ray] direction: unit, optical frame
-  std::vector<float> lens;          // [pixel] vignetting: cos^4 of the angle to the axis (1 without lamp effect)
-  std::vector<float> lit_and_seen;  // [sub-ray] lens times lobe
-  std::vector<Board> boards;        // one at the lens, or two beside it
-  double tan_half_x, tan_half_y;    // of the field of view
-  double lobe_exponent;             // 0: even
-  double lamp_reach;                // how far the lamp shines, in fields of view
+  std::vector<float> x, y, z;              // [sub-ray] direction: unit, optical frame
+  std::vector<float> lens;                 // [pixel] vignetting: cos^4 of the angle to the axis (1 without lamp effect)
+  std::vector<float> lit_and_seen;         // [sub-ray] lens times lobe
+  std::vector<Board> boards;               // one at the lens, or two beside it
+  double tan_half_x, tan_half_y;           // of the field of view
+  double lobe_exponent;                    // 0: even
+  double lamp_reach;                       // how far the lamp shines, in fields of view
 };
 
 }  // namespace merlin::sim

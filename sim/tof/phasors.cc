@@ -208,7 +208,8 @@ void RowPhasors(const RowHits& hits, const Optics& optics, const PhasorScale& sc
   SinCos(work.phase, work.sine, work.cosine);
   out.Clear();
   for (std::size_t s = 0; s < n; ++s)
-    AddWays(work.electrons.data() + s * width, work.cosine.data() + s * width, work.sine.data() + s * width, width, out);
+    AddWays(work.electrons.data() + s * width, work.cosine.data() + s * width, work.sine.data() + s * width, width,
+            out);
   for (const ExtraReturn& one : extra) AddExtra(hits, optics, scale, one, first, out);
 }
 

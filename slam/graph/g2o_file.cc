@@ -27,9 +27,8 @@ constexpr double kIndefiniteTolerance = 1e-9;  // of the largest eigenvalue: rou
 constexpr std::array<std::string_view, 5> kTags{"VERTEX_SE2", "EDGE_SE2", "VERTEX_SE3:QUAT", "EDGE_SE3:QUAT", "FIX"};
 // g2o's edges that are measured from a sensor's place on the robot, which a PARAMS line gives.
 constexpr std::array<std::string_view, 10> kTagsWithParameters{
-    "EDGE_SE2_OFFSET",     "EDGE_SE2_POINTXY_OFFSET", "EDGE_SE3_OFFSET",        "EDGE_SE3_PRIOR",
-    "EDGE_SE3_TRACKXYZ",   "EDGE_SE3_LOTSOF_XYZ",     "EDGE_PROJECT_DISPARITY", "EDGE_PROJECT_DEPTH",
-    "EDGE_PROJECT_P2MC",   "EDGE_PROJECT_P2SC"};
+    "EDGE_SE2_OFFSET",     "EDGE_SE2_POINTXY_OFFSET", "EDGE_SE3_OFFSET",    "EDGE_SE3_PRIOR",    "EDGE_SE3_TRACKXYZ",
+    "EDGE_SE3_LOTSOF_XYZ", "EDGE_PROJECT_DISPARITY",  "EDGE_PROJECT_DEPTH", "EDGE_PROJECT_P2MC", "EDGE_PROJECT_P2SC"};
 
 struct Vertex {
   std::int64_t id = 0;
@@ -154,7 +153,7 @@ class Reader {
     }
     std::ranges::stable_sort(vertices_, {}, &Vertex::id);
     for (std::size_t i = 1; file_.has_poses && i < vertices_.size(); ++i)
-      if (const Vertex &first = vertices_[i - 1], &again = vertices_[i]; first.id == again.id)
+      if (const Vertex& first = vertices_[i - 1], &again = vertices_[i]; first.id == again.id)
         faults_.Add(fmt::format("{}: pose {} again; it is in line {} already", At(again.line), again.id, first.line));
     const auto repeated = std::ranges::unique(vertices_, {}, &Vertex::id);
     vertices_.erase(repeated.begin(), repeated.end());
@@ -202,10 +201,10 @@ class Reader {
     }
     if (parts.size() == 1) return;
     const auto single = std::ranges::count_if(parts, [](const GraphPart& part) { return part.poses.size() == 1; });
-    file_.warnings.push_back(
-        fmt::format("{}: the graph has {} parts that no edge joins; each is solved by itself, about its FIX or its first "
-                    "pose{}",
-                    name_, parts.size(), single > 0 ? fmt::format(" ({} of one pose, which stays)", single) : ""));
+    file_.warnings.push_back(fmt::format(
+        "{}: the graph has {} parts that no edge joins; each is solved by itself, about its FIX or its first "
+        "pose{}",
+        name_, parts.size(), single > 0 ? fmt::format(" ({} of one pose, which stays)", single) : ""));
   }
 
   std::vector<std::size_t> RepeatedEdges() {

@@ -36,7 +36,8 @@ std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const 
 }
 
 // One map of them all, and a second, coarser one.
-void AddTo(VoxelMap& fine, VoxelMap& coarse, std::span<const Keyframe> keyframes, const std::vector<std::size_t>& indices) {
+void AddTo(VoxelMap& fine, VoxelMap& coarse, std::span<const Keyframe> keyframes,
+           const std::vector<std::size_t>& indices) {
   std::vector<std::vector<Point>> thin;
   for (const std::size_t i : indices) thin.push_back(Downsample(keyframes[i].points_base, kThin_m));
   std::vector<PlacedPoints> views;
@@ -54,8 +55,8 @@ double ShareMeeting(const VoxelMap& map, std::span<const Point> points_base, con
 
 }  // namespace
 
-std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<const Point> points_base, const Pose& T_map_base,
-                             double path_m, const LoopConfig& config) {
+std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
+                             const Pose& T_map_base, double path_m, const LoopConfig& config) {
   const std::vector<std::size_t> former = FormerViews(keyframes, T_map_base, path_m, config);
   if (former.empty()) return std::nullopt;
 
@@ -64,22 +65,28 @@ std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<cons
   Vector6d sigma;
   sigma << config.start_sigma_m, config.start_sigma_m, 0.01, 0.005, 0.005, config.start_sigma_rad;
   prior.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
-  // Coarse first: a point finds its surface up to a voxel's edge away, whatever the walls' distance the estimate is off.
+  // Coarse first: a point finds its surface up to a voxel's edge away, whatever the walls' distance the estimate is
+  // off.
   VoxelMap coarse({.voxel_m = kCoarse_m}), fine({.voxel_m = kFine_m});
   AddTo(fine, coarse, keyframes, former);
-  const IcpConfig wide{
-      .iterations_max = kIterations, .step_converged = kStep, .kernel_m = 0.5 * kCoarse_m, .map_sigma_m = 0.1 * kCoarse_m};
+  const IcpConfig wide{.iterations_max = kIterations,
+                       .step_converged = kStep,
+                       .kernel_m = 0.5 * kCoarse_m,
+                       .map_sigma_m = 0.1 * kCoarse_m};
   const IcpConfig narrow{.iterations_max = kIterations, .step_converged = kStep};
   const RegisterResult guess = Register(points_base, Eigen::Vector3f::Zero(), coarse, prior, wide);
   if (guess.inliers < wide.inliers_min) return std::nullopt;  // where it ends, to and fro, does not matter yet
-  prior.information /= 4.0;  // it has done its work: the shape decides
+  prior.information /= 4.0;                                   // it has done its work: the shape decides
   const PosePrior refined{guess.T_map_base, Matrix6d(prior.information)};
   const RegisterResult fit = Register(points_base, Eigen::Vector3f::Zero(), fine, refined, narrow);
   if (!fit.converged || fit.rms_m > config.rms_max_m) return std::nullopt;
   const Eigen::Matrix2d covariance_m2 = fit.covariance.topLeftCorner<2, 2>();
-  const double sigma_m = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance_m2).eigenvalues().maxCoeff());
-  const double near = ShareMeeting(coarse, points_base, fit.T_map_base), on = ShareMeeting(fine, points_base, fit.T_map_base);
-  if (sigma_m > config.sigma_max_m || near < config.overlap_min || on < config.on_surface_min * near) return std::nullopt;
+  const double sigma_m =
+      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance_m2).eigenvalues().maxCoeff());
+  const double near = ShareMeeting(coarse, points_base, fit.T_map_base),
+               on = ShareMeeting(fine, points_base, fit.T_map_base);
+  if (sigma_m > config.sigma_max_m || near < config.overlap_min || on < config.on_surface_min * near)
+    return std::nullopt;
   return Loop{former.front(), fit.T_map_base, fit.covariance, near};
 }
 

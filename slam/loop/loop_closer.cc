@@ -22,7 +22,8 @@ bool Agree(const Pose& a, const Pose& b, const Eigen::Vector3d& at, double withi
 }
 
 // As measured between the newest key frame and a former one.
-GraphEdge EdgeOf(std::span<const Keyframe> keyframes, const Loop& loop, const Pose& T_map_base, const LoopConfig& config) {
+GraphEdge EdgeOf(std::span<const Keyframe> keyframes, const Loop& loop, const Pose& T_map_base,
+                 const LoopConfig& config) {
   const Pose T_base_newest = T_map_base.inverse() * keyframes.back().T_map_base;
   GraphEdge edge{.from = loop.former, .to = keyframes.size() - 1};
   edge.T_from_to = keyframes[loop.former].T_map_base.inverse() * loop.T_map_base * T_base_newest;
@@ -48,13 +49,15 @@ std::vector<Pose> InPlane(std::span<const Keyframe> keyframes, const std::vector
 
 bool LoopCloser::Agrees(const Loop& loop, const Pose& T_map_base) {
   const Pose correction = loop.T_map_base * T_map_base.inverse();
-  agreeing_ = correction_ && Agree(*correction_, correction, T_map_base.translation(), config_.agreeing_m) ? agreeing_ + 1 : 1;
+  agreeing_ =
+      correction_ && Agree(*correction_, correction, T_map_base.translation(), config_.agreeing_m) ? agreeing_ + 1 : 1;
   correction_ = correction;
   return agreeing_ >= config_.agreeing_min;
 }
 
-std::optional<std::vector<Pose>> LoopCloser::Search(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
-                                                    const Pose& T_map_base, double path_m) {
+std::optional<std::vector<Pose>> LoopCloser::Search(std::span<const Keyframe> keyframes,
+                                                    std::span<const Point> points_base, const Pose& T_map_base,
+                                                    double path_m) {
   searched_m_ = path_m;
   const std::optional<Loop> loop = FindLoop(keyframes, points_base, T_map_base, path_m, config_);
   if (!loop) {
@@ -89,8 +92,9 @@ PoseGraph LoopCloser::Network(std::span<const Keyframe> keyframes) const {
     network.poses.push_back(keyframe.T_map_base);
     if (i == 0) continue;
     const double root = std::sqrt(std::max(keyframe.path_m - keyframes[i - 1].path_m, kLeastWay_m));
-    network.edges.push_back({i - 1, i, keyframe.T_previous_base,
-                             DiagonalInformation(config_.path_sigma_m_per_sqrt_m * root, config_.turn_sigma_rad_per_sqrt_m * root)});
+    network.edges.push_back(
+        {i - 1, i, keyframe.T_previous_base,
+         DiagonalInformation(config_.path_sigma_m_per_sqrt_m * root, config_.turn_sigma_rad_per_sqrt_m * root)});
     if (!keyframe.yaw_rad) continue;
     Matrix6d heading = Matrix6d::Zero();
     heading(5, 5) = 1.0 / (std::pow(config_.heading_sigma_rad, 2) + std::pow(keyframe.yaw_sigma_rad, 2));

@@ -21,8 +21,10 @@ std::vector<Ray> RaysOf(const Observation& observation) {
   std::vector<Ray> rays;
   rays.reserve(observation.points_base.size() + observation.free_base.size() + observation.saturated_base.size() +
                observation.unknown_base.size());
-  for (const Point& point : observation.points_base) rays.push_back({point.position - observation.camera_base, Ray::Kind::kPoint});
-  for (const Eigen::Vector3f& end : observation.free_base) rays.push_back({end - observation.camera_base, Ray::Kind::kDark});
+  for (const Point& point : observation.points_base)
+    rays.push_back({point.position - observation.camera_base, Ray::Kind::kPoint});
+  for (const Eigen::Vector3f& end : observation.free_base)
+    rays.push_back({end - observation.camera_base, Ray::Kind::kDark});
   for (const auto& directions : {std::cref(observation.saturated_base), std::cref(observation.unknown_base)})
     for (const Eigen::Vector3f& direction : directions.get()) rays.push_back({direction, Ray::Kind::kUnknown});
   std::erase_if(rays, [](const Ray& ray) { return !(ray.end.norm() > 1e-3f && ray.end.norm() < kLongest_m); });
@@ -46,8 +48,10 @@ struct Bin {
   bool dark = false, unknown = false;
 
   void Add(const Ray& ray) {
-    if (ray.kind == Ray::Kind::kUnknown) unknown = true;
-    else shortest_m = std::min(shortest_m, ray.end.norm());
+    if (ray.kind == Ray::Kind::kUnknown)
+      unknown = true;
+    else
+      shortest_m = std::min(shortest_m, ray.end.norm());
     dark |= ray.kind == Ray::Kind::kDark;
   }
   void Add(const Bin& other) {

@@ -18,15 +18,16 @@ class ClearView {
   };
 
   ClearView() = default;  // saw nothing
-  // Of all pixels: those with a point, the free, saturated and unknown ones. Rays 60 deg or more off the level direction in which
-  // they look on the whole are left out, and what is not finite.
+  // Of all pixels: those with a point, the free, saturated and unknown ones. Rays 60 deg or more off the level
+  // direction in which they look on the whole are left out, and what is not finite.
   explicit ClearView(const Observation& observation);
 
   // p_view: in the frame of the view, with its origin in the camera, x level along the view, z up as the base's.
   Reach Along(const Eigen::Vector3f& p_view) const {
     if (!(p_view.x() > 0.0f)) return {};
     const float across = (p_view.y() / p_view.x() - left_) * per_bin_, up = (p_view.z() / p_view.x() - low_) * per_bin_;
-    if (!(across >= 0.0f && across < static_cast<float>(width_) && up >= 0.0f && up < static_cast<float>(height_))) return {};
+    if (!(across >= 0.0f && across < static_cast<float>(width_) && up >= 0.0f && up < static_cast<float>(height_)))
+      return {};
     const int length = lengths_[static_cast<std::size_t>(up) * width_ + static_cast<std::size_t>(across)];
     return {kUnit_m * static_cast<float>(length < 0 ? -length : length), length < 0};
   }

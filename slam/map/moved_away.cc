@@ -12,15 +12,16 @@ namespace {
 constexpr float kBlock_m = 1.0f;   // square columns of voxels that are in sight, or not, together
 constexpr float kFloor_m = 0.06f;  // what is no higher may be floor
 constexpr int kMost = 2, kLeast = -3;
-constexpr float kAslant = 0.15f;       // cosine; flatter surfaces show behind themselves by the error of a pose...
-constexpr float kAslantDark = 0.3f;    // ...or send too little back: black rubber's albedo of 0.07 still does
+constexpr float kAslant = 0.15f;     // cosine; flatter surfaces show behind themselves by the error of a pose...
+constexpr float kAslantDark = 0.3f;  // ...or send too little back: black rubber's albedo of 0.07 still does
 constexpr float kRange_m = 0.05f, kRangeShare = 0.03f, kPose_m = 0.05f;  // errors; guess
-constexpr float kBody_m = 0.04f;       // the car is narrower than its footprint, by the error of a pose
-constexpr float kReach_m = 0.1f;       // of its middle, before and behind: from one key frame to the next
+constexpr float kBody_m = 0.04f;  // the car is narrower than its footprint, by the error of a pose
+constexpr float kReach_m = 0.1f;  // of its middle, before and behind: from one key frame to the next
 
 enum class Look { kNone, kThere, kThrough };
 
-// Of the angle between a surface and the ray to it, from the camera. Without a normal: steep enough, unless it may be floor.
+// Of the angle between a surface and the ray to it, from the camera. Without a normal: steep enough, unless it may be
+// floor.
 float CosineOf(const Eigen::Vector3f& normal, const Eigen::Vector3f& ray, const Eigen::Vector3f& point_map) {
   if (normal.isZero()) return point_map.z() < kFloor_m ? 0.0f : kAslantDark;
   return std::abs(normal.dot(ray)) / ray.norm();
@@ -33,8 +34,8 @@ Look LookAt(const ClearView::Reach& reach, float range_m, float cosine) {
   return !reach.dark && reach.length_m >= range_m - margin_m ? Look::kThere : Look::kNone;
 }
 
-// Evidence that something is there, as an occupancy grid's log odds: two for each sight of it, one less for each through it,
-// bounded so that three of these outweigh whatever was before.
+// Evidence that something is there, as an occupancy grid's log odds: two for each sight of it, one less for each
+// through it, bounded so that three of these outweigh whatever was before.
 int Weighed(int evidence, Look look) {
   if (look == Look::kThere) return std::min(evidence + 2, kMost);
   if (look == Look::kThrough) return std::max(evidence - 1, kLeast);
@@ -84,7 +85,8 @@ bool MayBeSeen(const Eigen::Vector3f& middle_view, const ClearView& view) {
 
 class Evidence {
  public:
-  explicit Evidence(std::span<const Voxel> voxels) : all_(InBlocks(voxels)), weighed_(voxels.size(), kMost) {}  // a point fell in: seen
+  explicit Evidence(std::span<const Voxel> voxels)
+      : all_(InBlocks(voxels)), weighed_(voxels.size(), kMost) {}  // a point fell in: seen
 
   void Add(const ClearView& view, const Eigen::Isometry3f& T_base_map) {
     const Eigen::Matrix3f R = view.R_view_base() * T_base_map.linear();
@@ -121,11 +123,12 @@ class Evidence {
   std::vector<int> weighed_;  // in the order of the blocks' voxels
 };
 
-// The room that the car passes through, off the floor. Its nose may go under something; what comes to its middle would have
-// met the camera's mast.
+// The room that the car passes through, off the floor. Its nose may go under something; what comes to its middle would
+// have met the camera's mast.
 Eigen::AlignedBox3f MiddleOf(const Footprint& footprint) {
   const auto half_m = static_cast<float>(footprint.half_width_m) - kBody_m;
-  return {Eigen::Vector3f(-kReach_m, -half_m, kFloor_m), Eigen::Vector3f(kReach_m, half_m, static_cast<float>(footprint.height_m))};
+  return {Eigen::Vector3f(-kReach_m, -half_m, kFloor_m),
+          Eigen::Vector3f(kReach_m, half_m, static_cast<float>(footprint.height_m))};
 }
 
 struct PlacedSight {
@@ -143,7 +146,8 @@ std::vector<PlacedSight> InOrderOfTime(std::span<const Keyframe> keyframes) {
 
 }  // namespace
 
-std::vector<bool> MovedAway(std::span<const Voxel> voxels, std::span<const Keyframe> keyframes, const Footprint& footprint) {
+std::vector<bool> MovedAway(std::span<const Voxel> voxels, std::span<const Keyframe> keyframes,
+                            const Footprint& footprint) {
   Evidence evidence(voxels);
   const Eigen::AlignedBox3f car_base = MiddleOf(footprint);
   for (const PlacedSight& placed : InOrderOfTime(keyframes)) {

@@ -13,10 +13,10 @@
 namespace merlin {
 
 struct OccupancyConfig {
-  double cell_m = 0.05;            // [0.01, 1] edge
-  double height_min_m = 0.08;      // [-1, 3] lower points are floor
-  double height_max_m = 1.2;       // [0, 10] higher ones are over the car
-  double sweep_rad = 0.1;          // [0, 1.5] rays steeper than this against the floor free nothing: they pass over things
+  double cell_m = 0.05;        // [0.01, 1] edge
+  double height_min_m = 0.08;  // [-1, 3] lower points are floor
+  double height_max_m = 1.2;   // [0, 10] higher ones are over the car
+  double sweep_rad = 0.1;      // [0, 1.5] rays steeper than this against the floor free nothing: they pass over things
 };
 
 template <class Visitor>
@@ -49,7 +49,7 @@ class OccupancyGrid {
 
   OccupancyConfig config_;
   int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;  // cells
-  std::vector<std::int8_t> log_odds_;              // 0: unknown; clamped to +-kLimit
+  std::vector<std::int8_t> log_odds_;             // 0: unknown; clamped to +-kLimit
 };
 
 }  // namespace merlin

@@ -9,8 +9,8 @@
 namespace merlin {
 namespace {
 
-constexpr double kNearest_m = 0.5;   // views from nearer count as from there: one that errs should not decide alone
-constexpr double kGrazing = 0.01;    // cosine; so that whatever was seen has a colour
+constexpr double kNearest_m = 0.5;  // views from nearer count as from there: one that errs should not decide alone
+constexpr double kGrazing = 0.01;   // cosine; so that whatever was seen has a colour
 
 double WeightOf(const Point& point) { return 1e-4 / std::max<double>(point.sigma_m * point.sigma_m, 1e-6); }
 
@@ -25,7 +25,8 @@ void ForNeighbours(const std::array<std::int32_t, 3>& cell, Function function) {
 
 VoxelMap::Cell VoxelMap::CellOf(const Eigen::Vector3d& p) const {
   const Eigen::Vector3d cell = (p / config_.voxel_m).array().floor();
-  return {static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()), static_cast<std::int32_t>(cell.z())};
+  return {static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
+          static_cast<std::int32_t>(cell.z())};
 }
 
 Eigen::Vector3d VoxelMap::Centre(const Cell& cell) const {
@@ -152,7 +153,8 @@ void VoxelMap::Paint(std::span<const Point> points_base, const Eigen::Vector3f& 
     Voxel& voxel = voxels_[static_cast<std::size_t>(index)];
     const Eigen::Vector3d ray = p_map - camera_map;
     const double square_m2 = std::max(ray.squaredNorm(), kNearest_m * kNearest_m);
-    const double cosine = voxel.has_normal() ? std::abs(voxel.normal.cast<double>().dot(ray)) / std::sqrt(square_m2) : 1.0;
+    const double cosine =
+        voxel.has_normal() ? std::abs(voxel.normal.cast<double>().dot(ray)) / std::sqrt(square_m2) : 1.0;
     const double weight = std::pow(std::max(cosine, kGrazing) / square_m2, 2);
     voxel.bgr_sum += weight * Eigen::Vector3d(point.bgr[0], point.bgr[1], point.bgr[2]);
     voxel.color_weight += weight;
@@ -184,9 +186,9 @@ std::vector<Point> Downsample(std::span<const Point> points, double voxel_m) {
   for (const Point& point : points) {
     if (!VoxelMap::InReach(point.position)) continue;
     const Eigen::Vector3f cell = (point.position / static_cast<float>(voxel_m)).array().floor();
-    const auto [it, added] = index_of.try_emplace({static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
-                                                   static_cast<std::int32_t>(cell.z())},
-                                                  out.size());
+    const auto [it, added] = index_of.try_emplace(
+        {static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()), static_cast<std::int32_t>(cell.z())},
+        out.size());
     if (added) {
       out.push_back(point);
       counts.push_back(1);

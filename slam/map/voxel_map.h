@@ -15,9 +15,9 @@
 namespace merlin {
 
 struct VoxelMapConfig {
-  double voxel_m = 0.1;         // [0.005, 2] edge; larger is faster and reaches farther, smaller is sharper
-  double flatness_max = 0.1;    // [0, 1] smallest over middle eigenvalue of a neighbourhood that counts as a plane; guess
-  int plane_points_min = 6;     // [3, 1000] points a neighbourhood needs for a plane; guess
+  double voxel_m = 0.1;       // [0.005, 2] edge; larger is faster and reaches farther, smaller is sharper
+  double flatness_max = 0.1;  // [0, 1] smallest over middle eigenvalue of a neighbourhood that counts as a plane; guess
+  int plane_points_min = 6;   // [3, 1000] points a neighbourhood needs for a plane; guess
 };
 
 template <class Visitor>
@@ -29,15 +29,15 @@ void Visit(Visitor& v, VoxelMapConfig& c) {
 
 struct Voxel {
   std::array<std::int32_t, 3> cell{};
-  int count = 0;                            // points that fell in
-  double weight = 0.0;                      // their sum of 1 / sigma^2, 1 at 1 cm
-  Eigen::Vector3d sum{0, 0, 0};             // weighted, relative to the voxel's centre
+  int count = 0;                 // points that fell in
+  double weight = 0.0;           // their sum of 1 / sigma^2, 1 at 1 cm
+  Eigen::Vector3d sum{0, 0, 0};  // weighted, relative to the voxel's centre
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d bgr_sum{0, 0, 0};         // weighted by color_weight
-  double color_weight = 0.0;                // 0: without colour
-  double last_seen_m = 0.0;                 // path length at which a point last fell in
-  Eigen::Vector3f mean{0, 0, 0};            // in the map frame
-  Eigen::Vector3f normal{0, 0, 0};          // unit, either sign; zero: the neighbourhood is no plane
+  Eigen::Vector3d bgr_sum{0, 0, 0};  // weighted by color_weight
+  double color_weight = 0.0;         // 0: without colour
+  double last_seen_m = 0.0;          // path length at which a point last fell in
+  Eigen::Vector3f mean{0, 0, 0};     // in the map frame
+  Eigen::Vector3f normal{0, 0, 0};   // unit, either sign; zero: the neighbourhood is no plane
   bool has_normal() const { return !normal.isZero(); }
   bool has_color() const { return color_weight > 0.0; }
   Eigen::Vector3d bgr() const { return bgr_sum / color_weight; }  // [0, 255]; of a voxel with colour
@@ -55,12 +55,13 @@ class VoxelMap {
 
   // path_m: length driven so far, remembered as the voxels' last_seen_m.
   void Insert(std::span<const Point> points_base, const Pose& T_map_base, double path_m);
-  // As one Insert after the other, with the same bits, but a voxel's surface is computed only once: after the last frame
-  // that has points in it.
+  // As one Insert after the other, with the same bits, but a voxel's surface is computed only once: after the last
+  // frame that has points in it.
   void InsertAll(std::span<const PlacedPoints> frames, double path_m);
-  // Colours from the points that have one, for the voxels there are: the best views decide. One weighs (cos(incidence) /
-  // distance^2)^2, which is the square of how many pixels there are to an area, so that few frames from near and in front
-  // outweigh many from far and aslant. A voxel that is no plane counts as facing. camera_base: where the rays begin.
+  // Colours from the points that have one, for the voxels there are: the best views decide. One weighs (cos(incidence)
+  // / distance^2)^2, which is the square of how many pixels there are to an area, so that few frames from near and in
+  // front outweigh many from far and aslant. A voxel that is no plane counts as facing. camera_base: where the rays
+  // begin.
   void Paint(std::span<const Point> points_base, const Eigen::Vector3f& camera_base, const Pose& T_map_base);
   // Forgets voxels last seen before path_m.
   void ForgetBefore(double path_m);
@@ -119,8 +120,8 @@ class VoxelMap {
   void UpdateSurface(Voxel& voxel) const;
 
   VoxelMapConfig config_;
-  std::vector<Voxel> voxels_;               // in order of creation: the same whatever the table's size
-  std::vector<Slot> slots_;                 // open addressing, linear probing; a power of two
+  std::vector<Voxel> voxels_;  // in order of creation: the same whatever the table's size
+  std::vector<Slot> slots_;    // open addressing, linear probing; a power of two
 };
 
 // One point a voxel of that edge: mean position, of the first point's sigma and colour. In order of first appearance.

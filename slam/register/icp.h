@@ -13,13 +13,13 @@
 namespace merlin {
 
 struct IcpConfig {
-  int iterations_max = 20;           // [1, 1000]
-  double step_converged = 2e-4;      // [0, 1] m and rad; a smaller step ends it
-  double kernel_m = 0.05;            // [0.001, 10] residual at which a pair's weight has fallen to a quarter; guess
-  double map_sigma_m = 0.01;         // [0, 1] of the map's surface; guess
-  double independent_share = 0.1;    // [0, 1] of pairs that carry information of their own: neighbours err alike; guess
-  int inliers_min = 60;              // [6, 1e9] pairs within two kernels, below: not converged
-  double inlier_share_min = 0.3;     // [0, 1] of all pairs, below: not converged
+  int iterations_max = 20;         // [1, 1000]
+  double step_converged = 2e-4;    // [0, 1] m and rad; a smaller step ends it
+  double kernel_m = 0.05;          // [0.001, 10] residual at which a pair's weight has fallen to a quarter; guess
+  double map_sigma_m = 0.01;       // [0, 1] of the map's surface; guess
+  double independent_share = 0.1;  // [0, 1] of pairs that carry information of their own: neighbours err alike; guess
+  int inliers_min = 60;            // [6, 1e9] pairs within two kernels, below: not converged
+  double inlier_share_min = 0.3;   // [0, 1] of all pairs, below: not converged
 };
 
 template <class Visitor>
@@ -33,7 +33,8 @@ void Visit(Visitor& v, IcpConfig& c) {
   v("inlier_share_min", c.inlier_share_min, {0.0, 1.0});
 }
 
-// Where the pose is believed to be; information over (translation, rotation) in the base frame. Zero: no belief, only a guess.
+// Where the pose is believed to be; information over (translation, rotation) in the base frame. Zero: no belief, only a
+// guess.
 struct PosePrior {
   Pose T_map_base = Pose::Identity();
   Matrix6d information = Matrix6d::Zero();
@@ -44,15 +45,16 @@ struct RegisterResult {
   Matrix6d covariance = Matrix6d::Zero();  // over (translation, rotation) in the base frame
   int inliers = 0;
   double inlier_share = 0.0;  // of the points that meet the map: what is seen for the first time says nothing
-  double rms_m = 0.0;  // of the inliers' point-to-plane distances
+  double rms_m = 0.0;         // of the inliers' point-to-plane distances
   int iterations = 0;
-  // What the pairs alone, without the prior, do not hold, in the base frame: along these the pose is the prior's. All six
-  // where there are too few pairs.
+  // What the pairs alone, without the prior, do not hold, in the base frame: along these the pose is the prior's. All
+  // six where there are too few pairs.
   Undetermined undetermined{};
   bool converged = false;  // false: the pose is the last iterate and not to be trusted
 };
 
-// origin_base: where the rays of the points began. Starts at the prior's pose. Too few points or an empty map: not converged.
+// origin_base: where the rays of the points began. Starts at the prior's pose. Too few points or an empty map: not
+// converged.
 RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3f& origin_base, const VoxelMap& map,
                         const PosePrior& prior, const IcpConfig& config);
 

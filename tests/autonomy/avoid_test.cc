@@ -21,7 +21,8 @@ Observation Box(double x, double y, double z, double time_s = 0.0) {
   observation.stamp = FromSeconds(time_s);
   for (double dy = -0.2; dy <= 0.2; dy += 0.05)
     for (double dz = -0.2; dz <= 0.2; dz += 0.05)
-      observation.points_base.push_back({.position = Eigen::Vector3d(x, y + dy, z + dz).cast<float>(), .sigma_m = 0.01f});
+      observation.points_base.push_back(
+          {.position = Eigen::Vector3d(x, y + dy, z + dz).cast<float>(), .sigma_m = 0.01f});
   return observation;
 }
 
@@ -34,7 +35,7 @@ TEST(Avoid, MeasuresTheFreeWayToABoxFromTheCarsFront) {
 
 TEST(Avoid, IgnoresWhatIsBesideAboveAndOnTheFloor) {
   Avoid avoid(kCar, {});
-  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.5, 0.3), Straight()));    // its edge is 0.3 m to the side, the car needs 0.24
+  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.5, 0.3), Straight()));  // its edge is 0.3 m to the side, the car needs 0.24
   EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.0, 1.0), Straight()));
   EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.0, -0.15), Straight()));  // up to 0.05 m high
   EXPECT_FALSE(avoid.FreeWay_m(Observation{}, Straight()));

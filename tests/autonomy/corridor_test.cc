@@ -70,7 +70,8 @@ TEST(Corridor, KnowsADeadEnd) {
   walls.Add(-2.0, 1.0, 4.0, 1.0);
   walls.Add(-2.0, -1.0, 4.0, -1.0);
   walls.Add(4.0, -1.0, 4.0, 1.0);
-  const Corridor corridor = SeeCorridor(walls.Map(), walls.Grid(), walls.T_map_plan(), {.yaw_rad = 0.4, .width_m = {}}, {});
+  const Corridor corridor =
+      SeeCorridor(walls.Map(), walls.Grid(), walls.T_map_plan(), {.yaw_rad = 0.4, .width_m = {}}, {});
   ASSERT_TRUE(corridor.front_m);
   EXPECT_FALSE(corridor.left_open);
   EXPECT_FALSE(corridor.right_open);
@@ -94,7 +95,8 @@ TEST(Corridor, TakesABoxInTheWayForNoEndWall) {
 }
 
 TEST(Corridor, KeepsTheHintWhereNothingIsSeen) {
-  const Corridor corridor = SeeCorridor(VoxelMap({}), OccupancyGrid({}), Pose::Identity(), {.yaw_rad = 0.7, .width_m = 2.0}, {});
+  const Corridor corridor =
+      SeeCorridor(VoxelMap({}), OccupancyGrid({}), Pose::Identity(), {.yaw_rad = 0.7, .width_m = 2.0}, {});
   EXPECT_DOUBLE_EQ(corridor.yaw_rad, 0.7);
   EXPECT_DOUBLE_EQ(corridor.middle_m, 0.0);
   EXPECT_FALSE(corridor.left_m || corridor.right_m || corridor.front_m);

@@ -22,15 +22,16 @@ DriveState At(double t_s, double battery_v, double current_a = 0.0, std::int64_t
   return {.stamp = FromSeconds(t_s), .encoder_counts = counts, .current_a = current_a, .battery_v = battery_v};
 }
 
-// A battery of 12 V and 0.1 ohm that feeds the motor of CarWithMotor() through a bridge, solved by hand the other way round:
-// from the duty to what the state says.
+// A battery of 12 V and 0.1 ohm that feeds the motor of CarWithMotor() through a bridge, solved by hand the other way
+// round: from the duty to what the state says.
 TEST(RestVoltage, IsThatOfTheBatteryBeforeItsResistance) {
   const double emf_v = 100.0 * 0.05;
   for (const double duty : {-0.8, 0.0, 0.3, 0.6, 1.0}) {
     // V = 12 - 0.1 duty I, I = (duty V - emf) / 0.5
     const double battery_v = (12.0 + 0.1 * duty * emf_v / 0.5) / (1.0 + 0.1 * duty * duty / 0.5);
     const double current_a = (duty * battery_v - emf_v) / 0.5;
-    EXPECT_NEAR(RestVoltage_v(At(0.0, battery_v, current_a), 100.0, CarWithMotor().drivetrain, 0.1), 12.0, 1e-9) << duty;
+    EXPECT_NEAR(RestVoltage_v(At(0.0, battery_v, current_a), 100.0, CarWithMotor().drivetrain, 0.1), 12.0, 1e-9)
+        << duty;
   }
   EXPECT_DOUBLE_EQ(RestVoltage_v(At(0.0, 0.0, 3.0), 0.0, CarWithMotor().drivetrain, 0.1), 0.0);
   EXPECT_TRUE(std::isfinite(RestVoltage_v(At(0.0, 1e-300, 3.0), 0.0, CarWithMotor().drivetrain, 0.1)));

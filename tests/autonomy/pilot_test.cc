@@ -58,7 +58,8 @@ TEST(Pilot, StandsWithoutAPoseAndBeforeAnObstacle) {
   Pilot pilot(Car(), {}, {});
   EXPECT_EQ(pilot.Decide(Quiet(), std::nullopt, slam).command.speed_m_s, 0.0);
   Observation observation = Quiet();
-  for (int i = 0; i < 20; ++i) observation.points_base.push_back({.position = {0.8f, 0.01f * i - 0.1f, 0.3f}, .sigma_m = 0.01f});
+  for (int i = 0; i < 20; ++i)
+    observation.points_base.push_back({.position = {0.8f, 0.01f * i - 0.1f, 0.3f}, .sigma_m = 0.01f});
   const Decision decision = pilot.Decide(observation, Pose::Identity(), slam);
   EXPECT_EQ(decision.command.speed_m_s, 0.0);
   EXPECT_EQ(decision.doing, "waits for an obstacle");
@@ -69,7 +70,8 @@ TEST(Pilot, LooksForObstaclesWhereItWillDriveNotWhereItWants) {
   const Slam slam = InCorridor(FromXyYaw(0.0, 0.5, 0.0));
   Pilot pilot(Car(), {}, {});
   Observation observation = Quiet();
-  for (int i = 0; i < 20; ++i) observation.points_base.push_back({.position = {0.8f, 0.01f * i - 0.1f, 0.3f}, .sigma_m = 0.01f});
+  for (int i = 0; i < 20; ++i)
+    observation.points_base.push_back({.position = {0.8f, 0.01f * i - 0.1f, 0.3f}, .sigma_m = 0.01f});
   EXPECT_EQ(pilot.Decide(observation, Pose::Identity(), slam).command.speed_m_s, 0.0);
 }
 
@@ -80,7 +82,8 @@ TEST(Pilot, IsDoneAfterItsLapsAndNotBefore) {
   constexpr int kSteps = 400;
   for (int i = 0; i <= kSteps + 10; ++i) {  // once round a circle of 5 m radius that begins along x, and 0.78 m on
     const double angle = 2.0 * std::numbers::pi * i / kSteps;
-    decision = pilot.Decide(Quiet(), FromXyYaw(5.0 * std::sin(angle), 5.0 * (1.0 - std::cos(angle)), WrapPi(angle)), slam);
+    decision =
+        pilot.Decide(Quiet(), FromXyYaw(5.0 * std::sin(angle), 5.0 * (1.0 - std::cos(angle)), WrapPi(angle)), slam);
     EXPECT_EQ(decision.done, i >= kSteps + 9) << i;  // 0.7 m beyond
   }
   EXPECT_TRUE(decision.done);

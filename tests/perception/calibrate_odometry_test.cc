@@ -59,16 +59,17 @@ TEST(CalibrateOdometry, ScattersAsMuchAsItSays) {
     MeasuredDrives drives = exact;
     for (StraightDrive& d : drives.straights) d.distance_m += drives.tape_sigma_m * normal(generator);
     for (CircleDrive& d : drives.circles) {
-      d.diameter_m = 2.0 * kTrue.wheelbase_m / std::abs(std::tan(d.steering_rad + kTrue.steering_offset_rad +
-                                                                 drives.steering_sigma_rad * normal(generator)));
+      d.diameter_m = 2.0 * kTrue.wheelbase_m /
+                     std::abs(std::tan(d.steering_rad + kTrue.steering_offset_rad +
+                                       drives.steering_sigma_rad * normal(generator)));
       d.diameter_m += drives.tape_sigma_m * normal(generator);
     }
     const OdometryCalibration found = CalibrateOdometry(Car(), drives);
     ASSERT_EQ(found.problem, "");
-    squares += Eigen::Vector3d(std::pow((found.value.wheel_radius_m - kTrue.wheel_radius_m) / found.sigma.wheel_radius_m, 2),
-                               std::pow((found.value.wheelbase_m - kTrue.wheelbase_m) / found.sigma.wheelbase_m, 2),
-                               std::pow((found.value.steering_offset_rad - kTrue.steering_offset_rad) /
-                                            found.sigma.steering_offset_rad, 2));
+    squares += Eigen::Vector3d(
+        std::pow((found.value.wheel_radius_m - kTrue.wheel_radius_m) / found.sigma.wheel_radius_m, 2),
+        std::pow((found.value.wheelbase_m - kTrue.wheelbase_m) / found.sigma.wheelbase_m, 2),
+        std::pow((found.value.steering_offset_rad - kTrue.steering_offset_rad) / found.sigma.steering_offset_rad, 2));
   }
   // Four sigmas of a variance from so many, and a quarter for weights taken at the described car.
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(squares[i] / kTimes, 1.0, 4.0 * std::sqrt(2.0 / kTimes) + 0.25) << i;

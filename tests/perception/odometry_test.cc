@@ -14,7 +14,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Path of each wheel on a circle about a point on the rear axle's line, from plane geometry; mean over the rear middle's.
+// Path of each wheel on a circle about a point on the rear axle's line, from plane geometry; mean over the rear
+// middle's.
 double MeanOfFourWheels(double steering_rad) {
   const double R = 0.33 / std::tan(steering_rad);
   double sum = 0.0;
@@ -67,7 +68,8 @@ TEST(Odometry, ClosesAFullCircleEitherWayRound) {
       if (i == kSteps / 2) half = *odometry.At(FromSeconds(0.02 * i));
     }
     const Pose end = *odometry.At(FromSeconds(0.02 * kSteps));
-    EXPECT_NEAR(half.translation().y(), std::copysign(2.0 * R, deg), 1e-3);  // across the circle, on the side steered to
+    EXPECT_NEAR(half.translation().y(), std::copysign(2.0 * R, deg),
+                1e-3);  // across the circle, on the side steered to
     EXPECT_NEAR(std::abs(Yaw(half)), pi, 1e-3);
     EXPECT_LT(end.translation().norm(), 1e-3);
     EXPECT_NEAR(Yaw(end), 0.0, 1e-3);
@@ -199,7 +201,8 @@ TEST(Heading, GrowsLessSureWithoutReadings) {
   const HeadingConfig config;
   Heading heading(config);
   heading.Update(Time{0}, 1.0, 0.0);
-  const double expected = std::hypot(config.compass_sigma_rad, config.drift_per_turn * 2.0, config.drift_rad_per_sqrt_s * 10.0);
+  const double expected =
+      std::hypot(config.compass_sigma_rad, config.drift_per_turn * 2.0, config.drift_rad_per_sqrt_s * 10.0);
   EXPECT_NEAR(heading.Sigma_rad(FromSeconds(100.0), 2.0), expected, 1e-12);  // 100 s and a turn of 2 rad later
 }
 

@@ -60,14 +60,15 @@ TEST(Project, TellsHowFarRaysAreFreeThatAreTooDarkToMeasure) {
   FilteredDepth depth = Depth();
   depth.frame.settings.integration_s = 1e-3;
   const auto pixel = [&depth](std::size_t i, Rejection reason, int flags, float amplitude_e) {
-    depth.reasons[i] = reason, depth.frame.flags[i] = static_cast<std::uint8_t>(flags), depth.frame.amplitude[i] = amplitude_e;
+    depth.reasons[i] = reason, depth.frame.flags[i] = static_cast<std::uint8_t>(flags),
+    depth.frame.amplitude[i] = amplitude_e;
   };
-  pixel(4, Rejection::kGhost, 0, 8'000.0f);                                         // 1.5 m straight ahead
+  pixel(4, Rejection::kGhost, 0, 8'000.0f);  // 1.5 m straight ahead
   pixel(3, Rejection::kLowSignal, kLowSignal, 600.0f);
-  pixel(0, Rejection::kInvalid, kInvalid | kLowSignal, std::nanf(""));              // as a driver may say it
+  pixel(0, Rejection::kInvalid, kInvalid | kLowSignal, std::nanf(""));  // as a driver may say it
   pixel(1, Rejection::kSaturated, kSaturated | kLowSignal, 0.0f);
   pixel(2, Rejection::kLonely, 0, 8'000.0f);
-  pixel(5, Rejection::kInvalid, kInvalid | kSaturated | kLowSignal, 0.0f);          // clipped, and what is left is dark
+  pixel(5, Rejection::kInvalid, kInvalid | kSaturated | kLowSignal, 0.0f);  // clipped, and what is left is dark
   pixel(6, Rejection::kInconsistent, kInconsistent | kLowSignal, 600.0f);
   Observation observation;
   ProjectDepth(depth, sheet, PixelRays(sheet.camera), LookingAhead(0.3, 0.35), observation);
@@ -93,11 +94,14 @@ TEST(Project, KeepsSaturatedPixelsAsDirections) {
   EXPECT_TRUE(observation.saturated_base[0].isApprox(Eigen::Vector3f::UnitX(), 1e-6f));
 }
 
-// Figures computed by hand from c / (4 sqrt2 pi f) = 0.844 m at 20 MHz and sqrt(N + 2 200^2) / (0.45 N): albedo 0.5, 1 ms.
+// Figures computed by hand from c / (4 sqrt2 pi f) = 0.844 m at 20 MHz and sqrt(N + 2 200^2) / (0.45 N): albedo 0.5, 1
+// ms.
 TEST(RangeSigma, GivesTheHandComputedMillimetres) {
-  for (const auto& [distance_m, sigma_mm] : {std::pair(1.0, 1.9), {2.0, 4.3}, {3.0, 7.4}, {4.0, 11.3}, {5.0, 16.2}, {7.0, 29.1}}) {
+  for (const auto& [distance_m, sigma_mm] :
+       {std::pair(1.0, 1.9), {2.0, 4.3}, {3.0, 7.4}, {4.0, 11.3}, {5.0, 16.2}, {7.0, 29.1}}) {
     const double amplitude_e = 0.45 * 2000.0 * 0.5 * 1000.0 / (distance_m * distance_m);
-    EXPECT_NEAR(1e3 * RangeSigma(WideSheet(), {1e-3, 20e6}).Of_m(amplitude_e), sigma_mm, 0.03 * sigma_mm + 0.05) << distance_m;
+    EXPECT_NEAR(1e3 * RangeSigma(WideSheet(), {1e-3, 20e6}).Of_m(amplitude_e), sigma_mm, 0.03 * sigma_mm + 0.05)
+        << distance_m;
   }
 }
 
@@ -112,10 +116,10 @@ ColorFrame Picture() {  // 4 x 2, the blue channel counts the pixels
 TEST(Fuse, ColorsThePointThatFallsOnAPixelAndNoOther) {
   const CameraModel camera{.width = 4, .height = 2, .fx_px = 2.0, .fy_px = 2.0, .cx_px = 1.0, .cy_px = 0.0};
   std::vector<Point> points(4);
-  points[0].position = {2.0f, 1.0f, 2.0f};    // u = 2 * 1 + 1 = 3, v = 1: the last pixel
-  points[1].position = {10.0f, 0.0f, 2.0f};   // right of the picture
-  points[2].position = {0.0f, 0.0f, -2.0f};   // behind the camera
-  points[3].position = {0.0f, 0.0f, 0.0f};    // in it
+  points[0].position = {2.0f, 1.0f, 2.0f};   // u = 2 * 1 + 1 = 3, v = 1: the last pixel
+  points[1].position = {10.0f, 0.0f, 2.0f};  // right of the picture
+  points[2].position = {0.0f, 0.0f, -2.0f};  // behind the camera
+  points[3].position = {0.0f, 0.0f, 0.0f};   // in it
   ColorPoints(points, Picture(), camera, Pose::Identity(), 0.01);
   EXPECT_TRUE(points[0].has_color);
   EXPECT_EQ(points[0].bgr, (std::array<std::uint8_t, 3>{7, 100, 200}));
@@ -156,8 +160,8 @@ struct ColorCameraAbove {
   Pose T_color_base = Pose(Eigen::Translation3d(0.0, 0.07, 0.0));
 };
 
-// A board at 1 m covers what lies above the axis, a wall stands at 3 m: from 7 cm higher up the board's lower edge hides the
-// wall down to 3 x 0.07 - 0.07 = 0.14 m below the axis.
+// A board at 1 m covers what lies above the axis, a wall stands at 3 m: from 7 cm higher up the board's lower edge
+// hides the wall down to 3 x 0.07 - 0.07 = 0.14 m below the axis.
 TEST(Fuse, PaintsNoSurfaceThatAnotherHidesFromTheColourCamera) {
   const ColorCameraAbove above;
   std::vector<Point> points = SeenBy64x48([](double, double down) { return down < 0.0 ? 1.0 : 3.0; });

@@ -72,7 +72,7 @@ class Description : public testing::Test {
   std::string ccd_ = Text(Model("cameras/ccd.yaml"));
 };
 
-const CarLink& Link(const CarDescription& car, const std::string& name) {
+const CarLink& Link(const CarDescription& car, const char* name) {
   return *std::find_if(car.links.begin(), car.links.end(), [&](const CarLink& link) { return link.name == name; });
 }
 
@@ -216,10 +216,12 @@ TEST_F(Description, RefusesAJointThatCannotTurnTheCameras) {
   ExpectSays(CarError(Replaced(merlin_, "<joint name=\"pan_joint\" type=\"revolute\">",
                                "<joint name=\"pan_joint\" type=\"fixed\">")),
              {"pan_joint", "revolute"});
-  ExpectSays(CarError(Replaced(merlin_, "lower=\"-1.5707963267948966\"", "lower=\"0.5\"")), {"pan_joint", "lower <= 0"});
+  ExpectSays(CarError(Replaced(merlin_, "lower=\"-1.5707963267948966\"", "lower=\"0.5\"")),
+             {"pan_joint", "lower <= 0"});
   // Upside down: the same joint, counted the other way.
   const std::string below = Replaced(merlin_, pan, "<origin xyz=\"0.245 0 0.315\"/><axis xyz=\"0 0 -1\"/>");
-  const CarDescription car = ReadCar(File("car.urdf", Replaced(below, "lower=\"-1.5707963267948966\"", "lower=\"-1\"")));
+  const CarDescription car =
+      ReadCar(File("car.urdf", Replaced(below, "lower=\"-1.5707963267948966\"", "lower=\"-1\"")));
   EXPECT_EQ(car.links[car.pan->link].axis, Eigen::Vector3d::UnitZ());
   EXPECT_DOUBLE_EQ(car.links[car.pan->link].joint_max_rad, 1.0);
   EXPECT_GT(car.pan->Turned(car.T_base_depth, 0.5).translation().y(), 0.0);

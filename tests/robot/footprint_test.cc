@@ -30,7 +30,8 @@ TEST(Footprint, ReachesOverMeshesToo) {
   CarShape shape;
   shape.kind = CarShape::Kind::kMesh;
   shape.size_m = {0.1, 0.1, 0.1};
-  shape.mesh = std::make_shared<CarMesh>(CarMesh{.vertices = {{-1, -2, 0}, {3, -2, 0}, {3, 1, 4}}, .triangles = {{0, 1, 2}}, .rgba = {}});
+  shape.mesh = std::make_shared<CarMesh>(
+      CarMesh{.vertices = {{-1, -2, 0}, {3, -2, 0}, {3, 1, 4}}, .triangles = {{0, 1, 2}}, .rgba = {}});
   shape.T_link_shape.translation() = Eigen::Vector3d(0.2, 0.0, 0.1);
   car.links[0].collision.push_back(shape);
   EXPECT_NEAR(FootprintOf(car).front_m, 0.5, 1e-7);

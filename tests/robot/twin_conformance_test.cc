@@ -64,7 +64,8 @@ class RiggedTwin final : public Rigged {
   Twin twin_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Twin, HalConformance, ::testing::Values(Plug{"twin", [] { return std::make_unique<RiggedTwin>(); }}),
+INSTANTIATE_TEST_SUITE_P(Twin, HalConformance,
+                         ::testing::Values(Plug{"twin", [] { return std::make_unique<RiggedTwin>(); }}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Twin, GivesTheSameFramesForAnyNumberOfThreads) {

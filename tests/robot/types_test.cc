@@ -10,9 +10,9 @@
 #include "robot/types/camera_model.h"
 #include "robot/types/color_camera.h"
 #include "robot/types/config.h"
-#include "robot/types/error.h"
 #include "robot/types/depth_camera.h"
 #include "robot/types/depth_camera_errors.h"
+#include "robot/types/error.h"
 #include "robot/types/nearest_name.h"
 #include "robot/types/se3.h"
 #include "robot/types/time.h"
@@ -33,7 +33,8 @@ std::vector<Vector6d> Tangents() {
 }
 
 TEST(Se3, LogUndoesExpFromZeroToPi) {
-  for (const Vector6d& tangent : Tangents()) EXPECT_LT((Log(Exp(tangent)) - tangent).norm(), 1e-8) << tangent.transpose();
+  for (const Vector6d& tangent : Tangents())
+    EXPECT_LT((Log(Exp(tangent)) - tangent).norm(), 1e-8) << tangent.transpose();
 }
 
 TEST(Se3, ExpAgreesWithEigensAngleAxisAndTheIntegralOfATwist) {
@@ -88,10 +89,26 @@ TEST(Angles, YawOfATiltedPoseIsThatOfItsXAxisFromAbove) {
   }
 }
 
-const CameraModel kCcd{.width = 640, .height = 480, .fx_px = 780.037, .fy_px = 777.844, .cx_px = 353.244, .cy_px = 223.784,
-                       .k1 = 0.024, .k2 = 0.015, .p1 = -0.006, .p2 = 0.0109};
-const CameraModel kBarrel{.width = 640, .height = 480, .fx_px = 420.0, .fy_px = 425.0, .cx_px = 310.0, .cy_px = 250.0,
-                          .k1 = -0.25, .k2 = 0.04, .p1 = 0.004, .p2 = -0.003};
+const CameraModel kCcd{.width = 640,
+                       .height = 480,
+                       .fx_px = 780.037,
+                       .fy_px = 777.844,
+                       .cx_px = 353.244,
+                       .cy_px = 223.784,
+                       .k1 = 0.024,
+                       .k2 = 0.015,
+                       .p1 = -0.006,
+                       .p2 = 0.0109};
+const CameraModel kBarrel{.width = 640,
+                          .height = 480,
+                          .fx_px = 420.0,
+                          .fy_px = 425.0,
+                          .cx_px = 310.0,
+                          .cy_px = 250.0,
+                          .k1 = -0.25,
+                          .k2 = 0.04,
+                          .p1 = 0.004,
+                          .p2 = -0.003};
 
 // OpenCV's documentation of its calib3d module, "detailed description".
 Eigen::Vector2d OpenCvPixel(const CameraModel& c, double x, double y) {
@@ -104,7 +121,8 @@ TEST(CameraModel, ProjectsAsOpenCvsFormula) {
   for (const CameraModel& camera : {kCcd, kBarrel})
     for (const double x : {-0.4, -1e-9, 0.0, 0.2})
       for (const double y : {-0.25, 0.0, 1e-9, 0.3})
-        EXPECT_LT((camera.Project(3.0 * Eigen::Vector3d(x, y, 1.0)) - OpenCvPixel(camera, x, y)).norm(), 1e-9) << x << " " << y;
+        EXPECT_LT((camera.Project(3.0 * Eigen::Vector3d(x, y, 1.0)) - OpenCvPixel(camera, x, y)).norm(), 1e-9)
+            << x << " " << y;
 }
 
 TEST(CameraModel, RaysInvertTheDistortionFromTheCentreToTheCorners) {
@@ -134,7 +152,8 @@ TEST(CameraModel, WithoutDistortionIsThePinhole) {
 
 // x (1 - x^2 / 2) rises to 0.5443 at x = 0.8165 and falls from there: at x = 1 it is 0.5 again, as at x = 0.618.
 TEST(CameraModel, GivesNothingBeyondTheAngleWhereTheLensFoldsOver) {
-  CameraModel camera{.width = 200, .height = 200, .fx_px = 200.0, .fy_px = 200.0, .cx_px = 99.5, .cy_px = 99.5, .k1 = -0.5};
+  CameraModel camera{
+      .width = 200, .height = 200, .fx_px = 200.0, .fy_px = 200.0, .cx_px = 99.5, .cy_px = 99.5, .k1 = -0.5};
   EXPECT_NEAR(camera.Undistort({0.5, 0.0}).x(), (std::sqrt(5.0) - 1.0) / 2.0, 1e-12);
   EXPECT_TRUE(camera.Undistort({0.56, 0.0}).hasNaN());
   EXPECT_TRUE(camera.Project({1.0, 0.0, 1.0}).hasNaN());
@@ -145,18 +164,23 @@ TEST(CameraModel, GivesNothingBeyondTheAngleWhereTheLensFoldsOver) {
 TEST(CameraModel, KnowsWhetherTheFoldLiesInThePicture) {
   // Half the diagonal over the focal length against the fold at 0.5443.
   for (const auto& [focal_px, invertible] : {std::pair(500.0, true), {262.0, true}, {258.0, false}, {100.0, false}}) {
-    CameraModel camera{.width = 200, .height = 200, .fx_px = focal_px, .fy_px = focal_px, .cx_px = 99.5, .cy_px = 99.5, .k1 = -0.5};
+    CameraModel camera{
+        .width = 200, .height = 200, .fx_px = focal_px, .fy_px = focal_px, .cx_px = 99.5, .cy_px = 99.5, .k1 = -0.5};
     EXPECT_EQ(camera.IsInvertible(), invertible) << focal_px;
   }
 }
 
 TEST(ColorSettings, AreRefusedOutsideTheSheet) {
-  const ColorCameraSheet sheet{.name = "x", .exposure_nominal_s = 0.01, .exposure_min_s = 0.001, .exposure_max_s = 0.02, .gain_max = 4.0};
+  const ColorCameraSheet sheet{
+      .name = "x", .exposure_nominal_s = 0.01, .exposure_min_s = 0.001, .exposure_max_s = 0.02, .gain_max = 4.0};
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NO_THROW(CheckSettings(sheet, DefaultSettings(sheet)));
-  EXPECT_NO_THROW(CheckSettings(sheet, {.exposure_s = 0.02, .gain = 4.0, .white_balance_red = 4.0, .white_balance_blue = 0.25}));
-  for (const double exposure_s : {0.0, 0.00099, 0.0201, nan}) EXPECT_THROW(CheckSettings(sheet, {.exposure_s = exposure_s}), InputError);
-  for (const double gain : {0.99, 4.01, nan}) EXPECT_THROW(CheckSettings(sheet, {.exposure_s = 0.01, .gain = gain}), InputError);
+  EXPECT_NO_THROW(
+      CheckSettings(sheet, {.exposure_s = 0.02, .gain = 4.0, .white_balance_red = 4.0, .white_balance_blue = 0.25}));
+  for (const double exposure_s : {0.0, 0.00099, 0.0201, nan})
+    EXPECT_THROW(CheckSettings(sheet, {.exposure_s = exposure_s}), InputError);
+  for (const double gain : {0.99, 4.01, nan})
+    EXPECT_THROW(CheckSettings(sheet, {.exposure_s = 0.01, .gain = gain}), InputError);
   EXPECT_THROW(CheckSettings(sheet, {.exposure_s = 0.01, .white_balance_red = 0.2}), InputError);
   EXPECT_THROW(CheckSettings(sheet, {.exposure_s = 0.01, .white_balance_blue = nan}), InputError);
 }

@@ -60,7 +60,8 @@ TEST(Drives, NameWhatIsWrongWithThem) {
   const auto said = [](const std::string& from, const std::string& to) {
     return ReadComplaint(ReadDrives, Replaced(kGood, from, to));
   };
-  ExpectSays(said("distance_m", "distanz_m"), "f.yaml:2: straights[0].distanz_m: unknown key; did you mean 'distance_m'?");
+  ExpectSays(said("distance_m", "distanz_m"),
+             "f.yaml:2: straights[0].distanz_m: unknown key; did you mean 'distance_m'?");
   ExpectSays(said("5.003", "-5.003"), "straights[0].distance_m: expected a number in [0.5, 1000], got '-5.003'");
   ExpectSays(said("2.6", ".nan"), "circles[0].diameter_m");
   ExpectSays(said("74112", "12.5"), "expected a whole number");

@@ -20,10 +20,15 @@ namespace {
 
 std::atomic<bool> never{false};
 
-RunReport DriveScenario(const std::string& scenario, const std::filesystem::path& out, std::vector<std::string> sets = {}, int threads = 2,
-              sim::Gl gl = sim::Gl::kAuto) {
-  return RunScenario({.name = scenario, .scenario = ReadScenario(scenario, sets), .out = out, .gl = gl, .threads = threads,
-                      .pace = 0.0, .progress = {}},
+RunReport DriveScenario(const std::string& scenario, const std::filesystem::path& out,
+                        std::vector<std::string> sets = {}, int threads = 2, sim::Gl gl = sim::Gl::kAuto) {
+  return RunScenario({.name = scenario,
+                      .scenario = ReadScenario(scenario, sets),
+                      .out = out,
+                      .gl = gl,
+                      .threads = threads,
+                      .pace = 0.0,
+                      .progress = {}},
                      never);
 }
 
@@ -55,8 +60,9 @@ TEST(CorridorShort, LeavesTheFilesOfARun) {
   const TemporaryFolder folder;
   const auto out = folder.path() / "run";
   DriveScenario("corridor_short", out, {"duration_s=4"}, 2, sim::Gl::kOff);
-  for (const char* name : {"result.json", "junit.xml", "scenario.yaml", "trajectory_estimate.tum", "trajectory_online.tum",
-                           "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png"})
+  for (const char* name :
+       {"result.json", "junit.xml", "scenario.yaml", "trajectory_estimate.tum", "trajectory_online.tum",
+        "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png"})
     EXPECT_GT(std::filesystem::file_size(out / name), 0u) << name;
   // The resolved scenario is a scenario, and the same one.
   const std::string text = ToYaml(ReadScenario((out / "scenario.yaml").string(), {}));
@@ -74,15 +80,21 @@ TEST(CorridorShort, DrivesOnDepthAloneWithoutGlAndSaysSo) {
 
 TEST(CorridorShort, StopsBeforeItStartsWhereColorIsRequiredAndMissing) {
   const TemporaryFolder folder;
-  EXPECT_THROW(DriveScenario("corridor_short", folder.path() / "a", {"sensors.color.required=true"}, 2, sim::Gl::kOff), MachineError);
+  EXPECT_THROW(DriveScenario("corridor_short", folder.path() / "a", {"sensors.color.required=true"}, 2, sim::Gl::kOff),
+               MachineError);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "a"));
 }
 
 TEST(CorridorShort, EndsInGoodOrderWhenInterrupted) {
   const TemporaryFolder folder;
   std::atomic<bool> stop{false};
-  RunOptions options{.name = "corridor_short", .scenario = ReadScenario("corridor_short", {}), .out = folder.path() / "a",
-                     .gl = sim::Gl::kOff, .threads = 2, .pace = 0.0, .progress = {}};
+  RunOptions options{.name = "corridor_short",
+                     .scenario = ReadScenario("corridor_short", {}),
+                     .out = folder.path() / "a",
+                     .gl = sim::Gl::kOff,
+                     .threads = 2,
+                     .pace = 0.0,
+                     .progress = {}};
   options.progress = [&stop](Time now, double, const std::string&) { stop = stop || now > std::chrono::seconds(4); };
   options.pace = 20.0;  // so that progress is told of before the end
   const RunReport report = RunScenario(options, stop);
@@ -114,22 +126,25 @@ TEST(CorridorObstacle, StopsBeforeTheBoxStaysAndDrivesOn) {
   EXPECT_GE(*m.obstacle_gap_m, 0.3);
   EXPECT_GE(*m.obstacle_stop_s, 5.0);
   EXPECT_GE(*m.distance_m, 9.0);  // about 5.5 m until it stands; the rest after the box has gone
-  // The box's front covers 125 voxels of 4 cm (0.4 x 0.5 m), 64 of them where the camera still looks from 0.7 m away. Low
-  // down, and at the edges, nothing ever looked through it, nor drove.
+  // The box's front covers 125 voxels of 4 cm (0.4 x 0.5 m), 64 of them where the camera still looks from 0.7 m away.
+  // Low down, and at the edges, nothing ever looked through it, nor drove.
   const auto left_in = [&](float half_width_m, float low_m) {
-    return MapPointsIn(folder.path() / "a/map.ply", {Eigen::Vector3f(5.4f, -half_width_m, low_m), Eigen::Vector3f(7.0f, half_width_m, 0.5f)});
+    return MapPointsIn(folder.path() / "a/map.ply",
+                       {Eigen::Vector3f(5.4f, -half_width_m, low_m), Eigen::Vector3f(7.0f, half_width_m, 0.5f)});
   };
   EXPECT_LT(left_in(0.17f, 0.2f), 6) << "what went away is still in the map";
   EXPECT_LT(left_in(0.3f, 0.06f), 60);
-  EXPECT_GT(MapPointsIn(folder.path() / "a/map.ply", Eigen::AlignedBox3f(Eigen::Vector3f(0.0f, -2.0f, -1.0f), Eigen::Vector3f(9.0f, 2.0f, 3.0f))), 5000);
+  EXPECT_GT(MapPointsIn(folder.path() / "a/map.ply",
+                        Eigen::AlignedBox3f(Eigen::Vector3f(0.0f, -2.0f, -1.0f), Eigen::Vector3f(9.0f, 2.0f, 3.0f))),
+            5000);
 }
 
 // A small battery with 12 % of its charge left, on the way.
 TEST(EmptyBattery, EndsTheRunWithAVerdictThatSaysSo) {
   const TemporaryFolder folder;
-  const RunReport report =
-      DriveScenario("corridor_short", folder.path() / "a",
-                    {"car.drivetrain.battery.capacity_ah=0.05", "car.drivetrain.battery.charge=0.12", "checks={}"}, 2, sim::Gl::kOff);
+  const RunReport report = DriveScenario(
+      "corridor_short", folder.path() / "a",
+      {"car.drivetrain.battery.capacity_ah=0.05", "car.drivetrain.battery.charge=0.12", "checks={}"}, 2, sim::Gl::kOff);
   EXPECT_EQ(report.result.verdict, Verdict::kFail);
   EXPECT_NE(report.result.fault.find("battery is empty"), std::string::npos) << report.result.fault;
   EXPECT_LT(*report.result.metrics.sim_time_s, 19.0);
@@ -141,7 +156,8 @@ TEST(EmptyBattery, EndsTheRunWithAVerdictThatSaysSo) {
 TEST(EmptyBattery, LeavesTheCarStandingWithAReserve) {
   const std::filesystem::path models = Home() / "models";
   TwinOptions options;
-  options.world = {models / "rooms/corridor_26x21.xml", ReadCar(models / "merlin/merlin.urdf"), FromXyYaw(-6.0, -9.5, 0.0), {}};
+  options.world = {
+      models / "rooms/corridor_26x21.xml", ReadCar(models / "merlin/merlin.urdf"), FromXyYaw(-6.0, -9.5, 0.0), {}};
   options.world.drivetrain.battery = {.capacity_ah = 0.05, .charge = 0.12};
   options.materials = sim::ReadMaterials(models / "materials.yaml");
   options.depth.sheet = ReadDepthCameraSheet(models / "cameras/pmd_3k_s.yaml");
@@ -165,7 +181,8 @@ TEST(EmptyBattery, LeavesTheCarStandingWithAReserve) {
 TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
   const std::filesystem::path models = Home() / "models";
   TwinOptions options;
-  options.world = {models / "rooms/corridor_26x21.xml", ReadCar(models / "merlin/merlin.urdf"), FromXyYaw(-12.2, -9.5, 0.0), {}};
+  options.world = {
+      models / "rooms/corridor_26x21.xml", ReadCar(models / "merlin/merlin.urdf"), FromXyYaw(-12.2, -9.5, 0.0), {}};
   options.materials = sim::ReadMaterials(models / "materials.yaml");
   options.depth.sheet = ReadDepthCameraSheet(models / "cameras/pmd_3k_s.yaml");
   options.compass.emplace();
@@ -197,7 +214,8 @@ TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
   for (const Voxel& voxel : map.voxels()) {
     const Eigen::Vector3d p_world = T_world_map * voxel.mean.cast<double>();
     ++points;
-    if (std::abs(p_world.y() + 9.5) < 0.5 && std::abs(p_world.x()) < 12.5 && p_world.z() > 0.15 && p_world.z() < 2.0) ++ghosts;
+    if (std::abs(p_world.y() + 9.5) < 0.5 && std::abs(p_world.x()) < 12.5 && p_world.z() > 0.15 && p_world.z() < 2.0)
+      ++ghosts;
   }
   EXPECT_GT(points, 5000);
   EXPECT_LE(ghosts, points / 1000);

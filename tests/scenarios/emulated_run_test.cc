@@ -96,7 +96,8 @@ TEST(HardwareDevices, AreEachToldByName) {
   config.drive.serial.port = "/dev/merlin-none-1";
   config.compass.emplace().serial.port = "/dev/merlin-none-2";
   config.depth.pmd.library = "/no/libpmd.so";
-  const auto reports = CheckDevices(config, CamerasOf(ReadScenario("corridor_short", {})), std::chrono::milliseconds(10));
+  const auto reports =
+      CheckDevices(config, CamerasOf(ReadScenario("corridor_short", {})), std::chrono::milliseconds(10));
   ASSERT_EQ(reports.size(), 3u);
   EXPECT_NE(reports[0].complaint.find("/dev/merlin-none-1"), std::string::npos) << reports[0].complaint;
   EXPECT_NE(reports[1].complaint.find("/dev/merlin-none-2"), std::string::npos) << reports[1].complaint;

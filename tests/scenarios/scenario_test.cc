@@ -62,8 +62,11 @@ TEST(Scenario, NamesUnknownKeysWithLineAndTheNearest) {
 }
 
 TEST(Scenario, ReportsEveryValueOutOfRangeAtOnce) {
-  const std::string said = Complaint("room: hall\nduration_s: -1\nsensors: {depth: {rate_hz: .nan}}\nseed: -4\ntask: {laps: 1.5}\npilot: {speed_m_s: 9}\n");
-  for (const char* field : {":2: duration_s", ":3: sensors.depth.rate_hz", ":4: seed", ":5: task.laps", ":6: pilot.speed_m_s"})
+  const std::string said = Complaint(
+      "room: hall\nduration_s: -1\nsensors: {depth: {rate_hz: .nan}}\nseed: -4\ntask: {laps: 1.5}\npilot: {speed_m_s: "
+      "9}\n");
+  for (const char* field :
+       {":2: duration_s", ":3: sensors.depth.rate_hz", ":4: seed", ":5: task.laps", ":6: pilot.speed_m_s"})
     EXPECT_TRUE(Has(said, field)) << field << " in: " << said;
   EXPECT_TRUE(Has(said, "[0.05, 2], got '9'")) << said;
 }
@@ -109,7 +112,8 @@ TEST(Scenario, FindsFilesBesideItselfFromAnyFolder) {
 TEST(Scenario, SetsOverrideTheFileAndAreCheckedAlike) {
   EXPECT_EQ(Complaint("room: hall\n", {"pilot.speed_m_s=0.3", "sensors.compass.rate_hz=5"}), "");
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.sped_m_s=0.3"}), "did you mean 'speed_m_s'?"));
-  EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.speed_m_s=fast"}), "--set: pilot.speed_m_s: expected a number, got 'fast'"));
+  EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.speed_m_s=fast"}),
+                  "--set: pilot.speed_m_s: expected a number, got 'fast'"));
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot"}), "not an assignment"));
   EXPECT_TRUE(Has(Complaint("room: hall\nseed: 3\n", {"seed.x=1"}), "has no keys below it"));
   const TemporaryFolder folder;

@@ -14,15 +14,36 @@
 namespace merlin::sim {
 namespace {
 
-const CameraModel kThesisCcd{.width = 640, .height = 480, .fx_px = 780.037, .fy_px = 777.844, .cx_px = 353.244, .cy_px = 223.784,
-                       .k1 = 0.024, .k2 = 0.015, .p1 = -0.006, .p2 = 0.0109};
-const CameraModel kBarrel{.width = 640, .height = 480, .fx_px = 500.0, .fy_px = 505.0, .cx_px = 310.0, .cy_px = 250.0,
-                          .k1 = -0.25, .k2 = 0.05, .p1 = 0.004, .p2 = -0.003};
+const CameraModel kThesisCcd{.width = 640,
+                             .height = 480,
+                             .fx_px = 780.037,
+                             .fy_px = 777.844,
+                             .cx_px = 353.244,
+                             .cy_px = 223.784,
+                             .k1 = 0.024,
+                             .k2 = 0.015,
+                             .p1 = -0.006,
+                             .p2 = 0.0109};
+const CameraModel kBarrel{.width = 640,
+                          .height = 480,
+                          .fx_px = 500.0,
+                          .fy_px = 505.0,
+                          .cx_px = 310.0,
+                          .cy_px = 250.0,
+                          .k1 = -0.25,
+                          .k2 = 0.05,
+                          .p1 = 0.004,
+                          .p2 = -0.003};
 const CameraModel kSmall{.width = 96, .height = 64, .fx_px = 80.0, .fy_px = 80.0, .cx_px = 47.5, .cy_px = 31.5};
 
 ColorCameraSheet NoiseFree(const CameraModel& camera) {
-  return {.name = "test", .camera = camera, .full_well_e = 1e12, .exposure_nominal_s = 0.02, .exposure_min_s = 1e-4,
-          .exposure_max_s = 0.04, .gain_max = 8.0};
+  return {.name = "test",
+          .camera = camera,
+          .full_well_e = 1e12,
+          .exposure_nominal_s = 0.02,
+          .exposure_min_s = 1e-4,
+          .exposure_max_s = 0.04,
+          .gain_max = 8.0};
 }
 
 ColorSettings Fixed(double exposure_s) { return {.exposure_s = exposure_s, .auto_exposure = false}; }
@@ -33,7 +54,8 @@ struct SmallWorld {
     const std::string xml =
         "<mujoco><visual><headlight ambient='0 0 0' diffuse='0 0 0' specular='0 0 0'/></visual><asset>"
         "<material name='white' rgba='1 1 1 1' emission='1'/><material name='dim' rgba='.2 .2 .2 1' emission='1'/>"
-        "</asset><worldbody>" + body + "</worldbody></mujoco>";
+        "</asset><worldbody>" +
+        body + "</worldbody></mujoco>";
     char error[500] = "";
     mjSpec* spec = mj_parseXMLString(xml.c_str(), nullptr, error, sizeof(error));
     model = spec ? mj_compile(spec, nullptr) : nullptr;
@@ -111,8 +133,8 @@ TEST_F(ColorCameraTest, PutsMarkersWhereOpenCvsModelProjectsThem) {
         const Eigen::Vector2d pixel = PixelOf(model, point_camera);
         if (pixel.x() < 12 || pixel.y() < 12 || pixel.x() > model.width - 13 || pixel.y() > model.height - 13) continue;
         const Eigen::Vector3d p = T_world_camera * point_camera;
-        markers += "<geom size='.018' material='white' pos='" + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " +
-                   std::to_string(p.z()) + "'/>";
+        markers += "<geom size='.018' material='white' pos='" + std::to_string(p.x()) + " " + std::to_string(p.y()) +
+                   " " + std::to_string(p.z()) + "'/>";
         points_camera.push_back(point_camera);
       }
     ASSERT_GT(points_camera.size(), 25u);
@@ -147,7 +169,8 @@ TEST_F(ColorCameraTest, ExposesByTheFrameBefore) {
   EXPECT_EQ(first.settings, DefaultSettings(sheet));
   EXPECT_EQ(Green(first, 48, 32), 51);
   EXPECT_NEAR(second.settings.exposure_s * second.settings.gain, 0.02 * std::sqrt(0.18 / Linear(51)), 1e-6);
-  EXPECT_NEAR(Linear(Green(second, 48, 32)) / Linear(51), std::sqrt(0.18 / Linear(51)), 0.035);  // half a step of the code
+  EXPECT_NEAR(Linear(Green(second, 48, 32)) / Linear(51), std::sqrt(0.18 / Linear(51)),
+              0.035);  // half a step of the code
   // By hand it stays where it is put; automatic again, it starts from what it is given.
   EXPECT_EQ(expose(Fixed(0.01)).settings, Fixed(0.01));
   EXPECT_EQ(expose(Fixed(0.01)).settings, Fixed(0.01));

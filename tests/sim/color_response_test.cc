@@ -19,8 +19,15 @@ const std::size_t kValues = 3 * 200 * 120;
 
 // Few electrons: noise of many steps.
 ColorCameraSheet Noisy() {
-  return {.name = "test", .camera = kCamera, .full_well_e = 400.0, .read_noise_e = 5.0, .falloff_power = 0.0,
-          .exposure_nominal_s = 0.01, .exposure_min_s = 1e-4, .exposure_max_s = 0.04, .gain_max = 8.0};
+  return {.name = "test",
+          .camera = kCamera,
+          .full_well_e = 400.0,
+          .read_noise_e = 5.0,
+          .falloff_power = 0.0,
+          .exposure_nominal_s = 0.01,
+          .exposure_min_s = 1e-4,
+          .exposure_max_s = 0.04,
+          .gain_max = 8.0};
 }
 ColorCameraSheet Perfect() {
   ColorCameraSheet sheet = Noisy();
@@ -61,11 +68,13 @@ TEST(ColorResponse, HasPoissonsVarianceAndTheReadNoise) {
   for (const int value : {90, 120, 180})
     for (const double exposure : {0.5, 1.0, 1.5}) {
       const ColorSettings settings{.exposure_s = 0.01 * exposure};
-      const Statistics got = LinearStatistics(Exposed(Noisy(), Picture(kValues, static_cast<std::uint8_t>(value)), settings));
+      const Statistics got =
+          LinearStatistics(Exposed(Noisy(), Picture(kValues, static_cast<std::uint8_t>(value)), settings));
       const double electrons = 400.0 * LinearOf(value) * exposure;
       const double variance = (electrons + 25.0) / (400.0 * 400.0);
       const double five_errors = 5.0 * std::sqrt(variance / kValues);
-      EXPECT_NEAR(got.mean, electrons / 400.0, five_errors + 2e-4) << value << " " << exposure;  // and a step of the code
+      EXPECT_NEAR(got.mean, electrons / 400.0, five_errors + 2e-4)
+          << value << " " << exposure;  // and a step of the code
       // 1.5 %: five standard errors are 2.6 % of a 72,000th; rounding to 8 bit adds up to 0.5 %.
       EXPECT_NEAR(got.variance / variance, 1.0, 5.0 * std::sqrt(2.0 / kValues) + 0.005) << value << " " << exposure;
     }
@@ -131,11 +140,13 @@ TEST(ColorResponse, OfNeighboursAndOfFramesIsUncorrelated) {
   const Statistics s = LinearStatistics(now);
   const auto correlation = [&](const Picture& other, std::size_t step) {
     double sum = 0.0;
-    for (std::size_t i = 0; i + step < kValues; ++i) sum += (LinearOf(now[i]) - s.mean) * (LinearOf(other[i + step]) - s.mean);
+    for (std::size_t i = 0; i + step < kValues; ++i)
+      sum += (LinearOf(now[i]) - s.mean) * (LinearOf(other[i + step]) - s.mean);
     return sum / kValues / s.variance;
   };
   const double five_errors = 5.0 / std::sqrt(kValues);
-  for (const std::size_t step : {1, 2, 3, 8, 32, 480, 600}) EXPECT_NEAR(correlation(now, step), 0.0, five_errors) << step;
+  for (const std::size_t step : {1, 2, 3, 8, 32, 480, 600})
+    EXPECT_NEAR(correlation(now, step), 0.0, five_errors) << step;
   EXPECT_NEAR(correlation(next, 0), 0.0, five_errors);
 }
 
@@ -157,12 +168,14 @@ TEST(AutoExposure, BringsDimAndBrightPicturesToAGreyCard) {
 TEST(AutoExposure, GoesNoFartherThanTheSheetAndRests) {
   const ColorCameraSheet sheet = Perfect();
   ColorSettings dark = DefaultSettings(sheet), bright = dark;
-  for (int i = 0; i < 40; ++i) dark = NextExposure(sheet, dark, Picture(kValues, 0)), bright = NextExposure(sheet, bright, Picture(kValues, 255));
+  for (int i = 0; i < 40; ++i)
+    dark = NextExposure(sheet, dark, Picture(kValues, 0)), bright = NextExposure(sheet, bright, Picture(kValues, 255));
   EXPECT_EQ(dark.exposure_s, sheet.exposure_max_s);
   EXPECT_EQ(dark.gain, sheet.gain_max);
   EXPECT_EQ(bright.exposure_s, sheet.exposure_min_s);
   EXPECT_EQ(bright.gain, 1.0);
-  EXPECT_EQ(NextExposure(sheet, DefaultSettings(sheet), Picture(kValues, 118)), DefaultSettings(sheet));  // linear 0.181
+  EXPECT_EQ(NextExposure(sheet, DefaultSettings(sheet), Picture(kValues, 118)),
+            DefaultSettings(sheet));  // linear 0.181
 }
 
 }  // namespace

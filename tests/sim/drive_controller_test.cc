@@ -49,14 +49,16 @@ TEST(DriveAtRest, StandsStillForAMinuteAfterItHasDriven) {
 // Statics: a stalled motor draws V/R, and the wall takes its torque times the gear over the wheel's radius.
 TEST(DriveAgainstAWall, DrawsTheStallCurrentAndPushesWithItsTorque) {
   const CarDescription car = Merlin();
-  const auto world = MakeWorld(Room(std::string(kPlane) + R"(<geom name="wall" type="box" size=".1 2 1" pos=".62 0 1"/>)"));
+  const auto world =
+      MakeWorld(Room(std::string(kPlane) + R"(<geom name="wall" type="box" size=".1 2 1" pos=".62 0 1"/>)"));
   Send(*world, 0.1, 0.0);
   StepFor(*world, 0.95);  // at the wall since 0.75 s; at 1.1 s the integral has risen so far that the wheels slip
   ASSERT_LT(std::abs(world->Speed_m_s()), 1e-3);
   const DriveState state = Read(*world);
   EXPECT_GT(state.current_a, 3.0);
   EXPECT_NEAR(state.current_a, MotorVolts(*world) / car.drivetrain.resistance_ohm, 0.02 * state.current_a);
-  const std::unique_ptr<mjData, void (*)(mjData*)> now(mj_copyData(nullptr, world->model(), world->data()), mj_deleteData);
+  const std::unique_ptr<mjData, void (*)(mjData*)> now(mj_copyData(nullptr, world->model(), world->data()),
+                                                       mj_deleteData);
   mj_forward(world->model(), now.get());  // the forces of this very state
   double push_n = 0.0;
   for (int i = 0; i < now->ncon; ++i) {
@@ -124,11 +126,11 @@ TEST(DriveEnergy, IsNeverMoreThanTheBatteryGave) {
   drive(1.5, 2.0);
   const double driving_j = motor_j;
   EXPECT_NEAR(motor_j - heat_j, KineticEnergy_j(*world), 0.05 * motor_j);  // nothing else takes any, straight ahead
-  const double ripple_j = fed_back_j;  // the speed loop's
+  const double ripple_j = fed_back_j;                                      // the speed loop's
   drive(0.0, 2.0);
-  EXPECT_GT(fed_back_j - ripple_j, 1.0);  // braking gives some back,
-  EXPECT_LT(motor_j, driving_j);          // so that less is spent,
-  EXPECT_GT(motor_j, 0.0);                // but not all of it
+  EXPECT_GT(fed_back_j - ripple_j, 1.0);           // braking gives some back,
+  EXPECT_LT(motor_j, driving_j);                   // so that less is spent,
+  EXPECT_GT(motor_j, 0.0);                         // but not all of it
   EXPECT_NEAR(motor_j, heat_j, 0.05 * driving_j);  // at rest all of it is heat
 }
 
@@ -185,7 +187,8 @@ TEST(DriveSpeedLoop, HoldsTheMeanSpeedFromCountsAlone) {
       // A count in 10 ms is 7 mm/s: the loop sees no finer.
       EXPECT_NEAR(world->Speed_m_s(), speed_m_s, 0.01 * std::abs(speed_m_s) + 0.007);
     }
-    EXPECT_NEAR((world->T_world_base().translation().x() - start_m) / 2.0, speed_m_s, 0.005 * std::abs(speed_m_s) + 2e-4);
+    EXPECT_NEAR((world->T_world_base().translation().x() - start_m) / 2.0, speed_m_s,
+                0.005 * std::abs(speed_m_s) + 2e-4);
   }
 }
 

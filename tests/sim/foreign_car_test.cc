@@ -23,8 +23,8 @@ class AnyCar : public testing::TestWithParam<Foreign> {
   std::unique_ptr<World> Place(const std::string& worldbody, const Pose& T_world_start = Pose::Identity()) const {
     const TemporaryFile room("room.xml", Room(worldbody));
     // What the electronics add is another test's.
-    return std::make_unique<World>(
-        WorldOptions{.room = room.path(), .car = car_, .T_world_start = T_world_start, .drivetrain = IdealDrivetrain()});
+    return std::make_unique<World>(WorldOptions{
+        .room = room.path(), .car = car_, .T_world_start = T_world_start, .drivetrain = IdealDrivetrain()});
   }
   double Angle_rad(const World& world, std::size_t link) const {
     const int joint = mj_name2id(world.model(), mjOBJ_JOINT, car_.links[link].joint_name.c_str());
@@ -112,7 +112,8 @@ TEST_P(AnyCar, IsBlamedForWhatDoesNotCompile) {
     Place(kPlane);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_TRUE(std::string(error.what()).starts_with(car_.file.string() + ": the car does not compile")) << error.what();
+    EXPECT_TRUE(std::string(error.what()).starts_with(car_.file.string() + ": the car does not compile"))
+        << error.what();
   }
 }
 

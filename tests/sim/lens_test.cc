@@ -11,10 +11,26 @@
 namespace merlin::sim {
 namespace {
 
-const CameraModel kTableCcd{.width = 640, .height = 480, .fx_px = 780.037, .fy_px = 777.844, .cx_px = 353.244, .cy_px = 223.784,
-                       .k1 = 0.024, .k2 = 0.015, .p1 = -0.006, .p2 = 0.0109};
-const CameraModel kOddBarrel{.width = 161, .height = 90, .fx_px = 110.0, .fy_px = 115.0, .cx_px = 75.5, .cy_px = 50.0,
-                          .k1 = -0.25, .k2 = 0.05, .p1 = 0.004, .p2 = -0.003};
+const CameraModel kTableCcd{.width = 640,
+                            .height = 480,
+                            .fx_px = 780.037,
+                            .fy_px = 777.844,
+                            .cx_px = 353.244,
+                            .cy_px = 223.784,
+                            .k1 = 0.024,
+                            .k2 = 0.015,
+                            .p1 = -0.006,
+                            .p2 = 0.0109};
+const CameraModel kOddBarrel{.width = 161,
+                             .height = 90,
+                             .fx_px = 110.0,
+                             .fy_px = 115.0,
+                             .cx_px = 75.5,
+                             .cy_px = 50.0,
+                             .k1 = -0.25,
+                             .k2 = 0.05,
+                             .p1 = 0.004,
+                             .p2 = -0.003};
 
 struct Slope {
   double x = 0.0, y = 0.0;  // x / z, y / z
@@ -53,8 +69,8 @@ TEST(Lens, GivesEachPixelWhatLiesAlongItsOwnRay) {
     for (int v = 0; v < wide.height; ++v)
       for (int u = 0; u < wide.width; ++u)
         for (int channel = 0; channel < 3; ++channel)
-          drawn.push_back(static_cast<std::uint8_t>(std::lround(
-              Pattern(wide, {(u - wide.cx_px) / wide.fx_px, (v - wide.cy_px) / wide.fy_px}, channel))));
+          drawn.push_back(static_cast<std::uint8_t>(
+              std::lround(Pattern(wide, {(u - wide.cx_px) / wide.fx_px, (v - wide.cy_px) / wide.fy_px}, channel))));
     lens.Remap(drawn, seen);
     double sum = 0.0;
     std::size_t i = 0;

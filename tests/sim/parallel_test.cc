@@ -20,7 +20,11 @@ TEST(ParallelFor, DoesEachPartOnceForAnyNumberOfThreads) {
 
 TEST(ParallelFor, LetsOutWhatAPartThrows) {
   for (int round = 0; round < 100; ++round)
-    EXPECT_THROW(ParallelFor(64, 4, [](int i) { if (i == 33) throw std::runtime_error("33"); }), std::runtime_error);
+    EXPECT_THROW(ParallelFor(64, 4,
+                             [](int i) {
+                               if (i == 33) throw std::runtime_error("33");
+                             }),
+                 std::runtime_error);
 }
 
 TEST(ParallelFor, WorksWithinItselfAndFromSeveralThreadsAtOnce) {
@@ -29,9 +33,8 @@ TEST(ParallelFor, WorksWithinItselfAndFromSeveralThreadsAtOnce) {
     std::vector<std::jthread> callers;
     for (std::vector<int>& mine : done)
       callers.emplace_back([&mine] {
-        ParallelFor(20, 3, [&](int i) {
-          ParallelFor(20, 3, [&](int j) { ++mine[static_cast<std::size_t>(20 * i + j)]; });
-        });
+        ParallelFor(20, 3,
+                    [&](int i) { ParallelFor(20, 3, [&](int j) { ++mine[static_cast<std::size_t>(20 * i + j)]; }); });
       });
   }
   for (const std::vector<int>& mine : done) EXPECT_EQ(mine, std::vector<int>(400, 1));

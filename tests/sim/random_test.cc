@@ -155,7 +155,8 @@ TEST(Philox, EightBlocksAtOnceAreTheEightBlocks) {
   for (const std::uint32_t first : {0u, 12u, 0xFFFFFFFAu}) {  // the last wraps, in its own word
     const PhiloxOctet words = Philox4x32Octet({3, first, 5, 0x200}, key);
     for (std::uint32_t i = 0; i < 8; ++i)
-      EXPECT_EQ((Counter{words[0][i], words[1][i], words[2][i], words[3][i]}), Philox4x32({3, first + i, 5, 0x200}, key))
+      EXPECT_EQ((Counter{words[0][i], words[1][i], words[2][i], words[3][i]}),
+                Philox4x32({3, first + i, 5, 0x200}, key))
           << first << " " << i;
   }
 }
@@ -195,7 +196,8 @@ TEST(NormalRow, HasTheMomentsAndTailsOfTheNormalDistribution) {
     for (const std::vector<float>& numbers : row.of)
       for (std::size_t i = 0; i < 500; ++i) {
         const double x = numbers[i];
-        sum += x, squares += x * x, cubes += x * x * x, fourths += x * x * x * x, beyond_4 += std::abs(x) > 4.0, n += 1.0;
+        sum += x, squares += x * x, cubes += x * x * x, fourths += x * x * x * x, beyond_4 += std::abs(x) > 4.0,
+            n += 1.0;
       }
   }
   // Standard errors of the sample moments: variances 1, 2, 15, 96 over n.

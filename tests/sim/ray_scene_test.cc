@@ -105,7 +105,8 @@ Eigen::AlignedBox3d Surroundings(const Mujoco& world) {
     const Eigen::Vector3d half = R.cwiseAbs() * Eigen::Vector3d(world.model->geom_aabb + 6 * g + 3);
     box.extend(Eigen::AlignedBox3d(centre - half, centre + half));
   }
-  if (box.isEmpty()) box.extend(Eigen::AlignedBox3d(Eigen::Vector3d(-5, -5, 0), Eigen::Vector3d(5, 5, 2)));  // only planes
+  if (box.isEmpty())
+    box.extend(Eigen::AlignedBox3d(Eigen::Vector3d(-5, -5, 0), Eigen::Vector3d(5, 5, 2)));  // only planes
   box.min().z() = 0.02;
   box.max().z() = 2.0;
   return box;
@@ -324,8 +325,8 @@ TEST(RayScene, GivesARayTheSameBitsInAnyCompany) {
   Random random(1, Sensor::kDepth, 0);
   std::vector<Ray> rays;
   for (int i = 0; i < 1003; ++i) {  // not a multiple of a packet
-    rays.push_back({{0, 0, 1},
-                    Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized().cast<float>()});
+    rays.push_back(
+        {{0, 0, 1}, Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized().cast<float>()});
   }
   std::vector<RayHit> hits(rays.size());
   scene.Cast(rays, hits);

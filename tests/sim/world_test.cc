@@ -214,7 +214,8 @@ TEST(World, RoomsOwnDefaultsDoNotReachTheCar) {
     <default><geom contype="0" margin="1" friction="0.01"/><joint damping="9" armature="9"/><general gear="5"/></default>)"
                                             "<statistic extent=\"3\"/>"));
   const mjModel* m = world->model();
-  const int base = mj_name2id(m, mjOBJ_BODY, "base_link"), steering = mj_name2id(m, mjOBJ_JOINT, "virtual_front_wheel_joint");
+  const int base = mj_name2id(m, mjOBJ_BODY, "base_link"),
+            steering = mj_name2id(m, mjOBJ_JOINT, "virtual_front_wheel_joint");
   EXPECT_NEAR(m->body_subtreemass[base], 6.5, 1e-9);
   EXPECT_NEAR(m->jnt_range[2 * steering + 1], Merlin().steering_max_rad, 1e-12);
   EXPECT_NEAR(EmptyWorld()->model()->jnt_range[2 * steering + 1], Merlin().steering_max_rad, 1e-12);  // degrees there

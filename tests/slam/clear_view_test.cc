@@ -34,7 +34,8 @@ TEST(ClearView, GivesTheShortestRayAround) {
 
 TEST(ClearView, LooksLevelThatWayInWhichItsRaysDo) {
   Observation seen = Seen([](int, int up) { return up > 0 ? 2.0 : 3.0; });
-  std::erase_if(seen.points_base, [](const Point& point) { return point.position.z() < -0.3f * point.position.x(); });  // looks up
+  std::erase_if(seen.points_base,
+                [](const Point& point) { return point.position.z() < -0.3f * point.position.x(); });  // looks up
   const Pose T = FromXyYaw(1.0, 2.0, 2.5);
   for (Point& point : seen.points_base) point.position = (T * point.position.cast<double>()).cast<float>();
   seen.camera_base = T.translation().cast<float>();
@@ -48,7 +49,8 @@ TEST(ClearView, TellsDarkRaysAndIsSilentBesideUnknownOnes) {
   Observation seen = Seen([](int across, int) { return across == 0 ? 2.5 : 3.0; });
   const auto take = [&seen](float across, float up) {
     const auto at = std::ranges::find_if(seen.points_base, [&](const Point& point) {
-      return std::abs(point.position.y() / point.position.x() - across) < 0.01f && std::abs(point.position.z() / point.position.x() - up) < 0.01f;
+      return std::abs(point.position.y() / point.position.x() - across) < 0.01f &&
+             std::abs(point.position.z() / point.position.x() - up) < 0.01f;
     });
     const Eigen::Vector3f end = at->position;
     seen.points_base.erase(at);
@@ -75,9 +77,11 @@ TEST(ClearView, SaysNothingOfNothing) {
   };
   Observation around;  // all directions: no middle
   for (int i = 0; i < 360; ++i)
-    around.points_base.push_back({.position = {2.0f * std::cos(0.0174533f * i), 2.0f * std::sin(0.0174533f * i), 0.0f}});
-  for (const Observation& seen : {Observation{}, ends({{std::nanf(""), 0.0f, 0.0f}, {HUGE_VALF, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}}),
-                                  ends({{0.0f, 0.0f, 2.0f}}), around}) {
+    around.points_base.push_back(
+        {.position = {2.0f * std::cos(0.0174533f * i), 2.0f * std::sin(0.0174533f * i), 0.0f}});
+  for (const Observation& seen :
+       {Observation{}, ends({{std::nanf(""), 0.0f, 0.0f}, {HUGE_VALF, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}}),
+        ends({{0.0f, 0.0f, 2.0f}}), around}) {
     const ClearView view(seen);
     EXPECT_EQ(view.Along({1.0f, 0.0f, 0.0f}).length_m, 0.0f);
     EXPECT_EQ(view.Along({0.0f, 0.0f, 0.0f}).length_m, 0.0f);

@@ -48,8 +48,8 @@ TEST(Icp, FindsAKnownMotionFromSixCentimetresAndThreeDegreesAway) {
   tangent << 0.04, -0.03, 0.03, 0.03, -0.02, 0.04;
   const Pose T_map_base = Exp(tangent);
   const auto points_base = MovedPoints(NoisyCorner(0.005, 2), T_map_base.inverse());
-  const RegisterResult result = Register(points_base, (T_map_base.inverse() * kOrigin.cast<double>()).cast<float>(), map,
-                                         Guess(Pose::Identity()), {});
+  const RegisterResult result = Register(points_base, (T_map_base.inverse() * kOrigin.cast<double>()).cast<float>(),
+                                         map, Guess(Pose::Identity()), {});
   EXPECT_TRUE(result.converged);
   EXPECT_LT((result.T_map_base.translation() - T_map_base.translation()).norm(), 0.002);
   EXPECT_LT(LogSo3(result.T_map_base.linear().transpose() * T_map_base.linear()).norm(), 0.002);

@@ -17,11 +17,14 @@ Keyframe KeyframeAt(std::size_t index, const Pose& T_map_base) {
   Keyframe keyframe;
   keyframe.T_map_base = T_map_base;
   keyframe.camera_base = {0.3f, 0.0f, 0.35f};
-  for (int i = 0; i < 8; ++i) keyframe.points_base.push_back({.position = {at(random), at(random), 0.4f}, .sigma_m = 0.01f});
+  for (int i = 0; i < 8; ++i)
+    keyframe.points_base.push_back({.position = {at(random), at(random), 0.4f}, .sigma_m = 0.01f});
   return keyframe;
 }
 
-Pose Along(std::size_t index, double turn_rad) { return FromXyYaw(0, 0, turn_rad) * FromXyYaw(0.1 * static_cast<double>(index), 0.0, 0.0); }
+Pose Along(std::size_t index, double turn_rad) {
+  return FromXyYaw(0, 0, turn_rad) * FromXyYaw(0.1 * static_cast<double>(index), 0.0, 0.0);
+}
 
 // Origin, size and every cell, in the numbers of the map file.
 std::vector<double> CellsOf(const OccupancyGrid& grid) {
@@ -34,7 +37,8 @@ std::vector<double> CellsOf(const OccupancyGrid& grid) {
 // Each key frame after the other, by the grid itself.
 std::vector<double> MadeAtOnce(const std::vector<Keyframe>& keyframes) {
   OccupancyGrid grid({});
-  for (const Keyframe& keyframe : keyframes) grid.Insert(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
+  for (const Keyframe& keyframe : keyframes)
+    grid.Insert(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
   return CellsOf(grid);
 }
 
@@ -78,7 +82,8 @@ TEST(KeyframeGrid, IsAsIfMadeAtOnceAfterFortyFramesAtMost) {
       GridDrive drive;
       while (drive.keyframes.size() < count) drive.Add();
       drive.Move(0.1);
-      EXPECT_LE(drive.FramesUntilRenewed(drives, 0.1), KeyframeGrid::kFrames) << count << " key frames, drives: " << drives;
+      EXPECT_LE(drive.FramesUntilRenewed(drives, 0.1), KeyframeGrid::kFrames)
+          << count << " key frames, drives: " << drives;
       EXPECT_EQ(CellsOf(drive.grid.grid()), MadeAtOnce(drive.keyframes)) << count << " key frames, drives: " << drives;
       EXPECT_EQ(CellsOf(GridOf(drive.keyframes, {})), MadeAtOnce(drive.keyframes));
     }

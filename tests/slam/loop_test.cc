@@ -1,9 +1,9 @@
-#include "slam/loop/loop_closer.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "slam/loop/loop_closer.h"
 
 namespace merlin {
 namespace {
@@ -14,7 +14,8 @@ std::vector<Eigen::Vector3d> Corridor(double x0, bool pillars) {
   for (double z = 0.05; z < 1.2; z += 0.05) {
     for (double x = 0.0; x < 8.0; x += 0.05) points.emplace_back(x0 + x, 1.0, z), points.emplace_back(x0 + x, -1.0, z);
     for (const double x : {1.5, 3.5, 5.0})
-      for (double y = 0.0; y < 0.7 && pillars; y += 0.05) points.emplace_back(x0 + x, 1.0 - y, z), points.emplace_back(x0 + x, y - 1.0, z);
+      for (double y = 0.0; y < 0.7 && pillars; y += 0.05)
+        points.emplace_back(x0 + x, 1.0 - y, z), points.emplace_back(x0 + x, y - 1.0, z);
   }
   for (double x = 0.0; x < 8.0; x += 0.1)
     for (double y = -1.0; y <= 1.0; y += 0.1) points.emplace_back(x0 + x, y, 0.0);
@@ -77,7 +78,8 @@ TEST(FindLoop, FindsNoneSoonAfterNorElsewhereNorTheOtherWayNorInAnotherShape) {
 
 TEST(FindLoop, FindsNoneInABareCorridorWhichDoesNotTellWhereAlongIt) {
   const auto world = Corridor(0.0, false);
-  EXPECT_FALSE(FindLoop(FirstVisit(world), SeenFrom(world, FromXyYaw(0.4, 0.0, 0.0)), FromXyYaw(0.5, 0.0, 0.0), kLater_m, {}));
+  EXPECT_FALSE(
+      FindLoop(FirstVisit(world), SeenFrom(world, FromXyYaw(0.4, 0.0, 0.0)), FromXyYaw(0.5, 0.0, 0.0), kLater_m, {}));
 }
 
 // A square of 10 m edges driven once with odometry that drifts evenly one way in the room.

@@ -17,8 +17,8 @@ constexpr double kCamera_m = 0.35;  // height
 constexpr double kFar_m = 6.0;      // beyond it nothing returns...
 constexpr double kFree_m = 4.0;     // ...and so far the way is free then
 
-// Along a ray from outside to the box; infinite: past it. Slabs, one axis after the other. Plain numbers, since it is asked
-// a million times, under the sanitizers too.
+// Along a ray from outside to the box; infinite: past it. Slabs, one axis after the other. Plain numbers, since it is
+// asked a million times, under the sanitizers too.
 double RangeTo(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   const double *low = box.min().data(), *high = box.max().data(), *from = origin.data(), *along = direction.data();
   double enter = 0.0, leave = HUGE_VAL;
@@ -34,7 +34,8 @@ class Camera {
  public:
   Camera() {
     for (int v = 0; v < 48; ++v)
-      for (int u = 0; u < 64; ++u) rays_.push_back(Eigen::Vector3d(1.0, (31.5 - u) * 0.01137, (23.5 - v) * 0.01116).normalized());
+      for (int u = 0; u < 64; ++u)
+        rays_.push_back(Eigen::Vector3d(1.0, (31.5 - u) * 0.01137, (23.5 - v) * 0.01116).normalized());
   }
   Observation See(const std::vector<Box>& world, const Pose& T_map_base, bool tells_free) {
     Observation seen;
@@ -46,9 +47,12 @@ class Camera {
       double range_m = HUGE_VAL;
       for (const Box& box : world) range_m = std::min(range_m, RangeTo(box, from_map, ray_map));
       const Eigen::Vector3d end = camera + ray * (range_m < kFar_m ? range_m + noise_(random_) : kFree_m);
-      if (range_m < kFar_m) seen.points_base.push_back({.position = end.cast<float>(), .sigma_m = 0.01f});
-      else if (tells_free) seen.free_base.push_back(end.cast<float>());
-      else seen.unknown_base.push_back(ray.cast<float>());
+      if (range_m < kFar_m)
+        seen.points_base.push_back({.position = end.cast<float>(), .sigma_m = 0.01f});
+      else if (tells_free)
+        seen.free_base.push_back(end.cast<float>());
+      else
+        seen.unknown_base.push_back(ray.cast<float>());
     }
     return seen;
   }
@@ -73,7 +77,8 @@ std::vector<Box> BoxCorridor(double end_m) {
   const auto box = [](double x0, double y0, double z0, double x1, double y1, double z1) {
     return Box(Eigen::Vector3d(x0, y0, z0), Eigen::Vector3d(x1, y1, z1));
   };
-  return {box(-9, 1, 0, 99, 2, 3), box(-9, -2, 0, 99, -1, 3), box(-9, -2, -1, 99, 2, 0), box(end_m, -2, 0, end_m + 1, 2, 3)};
+  return {box(-9, 1, 0, 99, 2, 3), box(-9, -2, 0, 99, -1, 3), box(-9, -2, -1, 99, 2, 0),
+          box(end_m, -2, 0, end_m + 1, 2, 3)};
 }
 
 const Box kBox(Eigen::Vector3d(3.0, -0.2, 0.0), Eigen::Vector3d(3.4, 0.2, 0.5));
@@ -91,7 +96,8 @@ Outcome DrivePast(double end_m, bool tells_free, const std::function<bool(int)>&
   for (int i = 0; i < 30; ++i) {
     std::vector<Box> world = BoxCorridor(end_m);
     if (is_there(i)) world.push_back(thing);
-    keyframes.push_back(camera.Look(world, FromXyYaw(0.05 * i, 0.02 * std::sin(i), 0.03 * std::sin(0.7 * i)), tells_free));
+    keyframes.push_back(
+        camera.Look(world, FromXyYaw(0.05 * i, 0.02 * std::sin(i), 0.03 * std::sin(0.7 * i)), tells_free));
     map.Insert(keyframes.back().points_base, keyframes.back().T_map_base, 0.0);
   }
   const std::vector<bool> gone = MovedAway(map.voxels(), keyframes, {});
@@ -132,7 +138,8 @@ TEST(MovedAway, KeepsABoxThatCameAndStayed) {
 }
 
 TEST(MovedAway, KeepsAThinPole) {
-  const Outcome out = DrivePast(5.0, false, [](int) { return true; }, Box(Eigen::Vector3d(3.0, -0.02, 0.0), Eigen::Vector3d(3.04, 0.02, 0.9)));
+  const Outcome out = DrivePast(
+      5.0, false, [](int) { return true; }, Box(Eigen::Vector3d(3.0, -0.02, 0.0), Eigen::Vector3d(3.04, 0.02, 0.9)));
   EXPECT_GT(out.box, 30);
   EXPECT_GE(out.box_left, 0.95 * out.box);
 }
@@ -146,8 +153,8 @@ TEST(MovedAway, NeedsRaysThatTellOfTheDark) {
   EXPECT_GE(told.rest_left, 0.99 * told.rest);
 }
 
-// The floor from 3.4 m on, seen from near at first, then as nothing but dark pixels: each implies that it is free for longer
-// than the floor is away, since the floor sends so little back.
+// The floor from 3.4 m on, seen from near at first, then as nothing but dark pixels: each implies that it is free for
+// longer than the floor is away, since the floor sends so little back.
 TEST(MovedAway, KeepsAFloorThatIsTooDarkFromFarAway) {
   VoxelMap map({.voxel_m = 0.04});
   std::vector<Keyframe> keyframes;
@@ -160,7 +167,8 @@ TEST(MovedAway, KeepsAFloorThatIsTooDarkFromFarAway) {
     Observation dark;
     dark.camera_base = {0.0f, 0.0f, kCamera_m};
     for (const Point& point : keyframes.back().points_base)
-      if (point.position.z() < 0.1f) dark.free_base.push_back(dark.camera_base + 1.4f * (point.position - dark.camera_base));
+      if (point.position.z() < 0.1f)
+        dark.free_base.push_back(dark.camera_base + 1.4f * (point.position - dark.camera_base));
     keyframes.back().sights[0].view = ClearView(dark);
   }
   const std::vector<bool> gone = MovedAway(map.voxels(), keyframes, {});
@@ -198,7 +206,8 @@ TEST(MovedAway, WantsThreeSightsThatLookThrough) {
 TEST(MovedAway, KeepsWhatPixelsThatDoNotTellStandFor) {
   VoxelMap map({.voxel_m = 0.04});
   std::vector<Point> pole;
-  for (int i = 0; i < 40; ++i) pole.push_back({.position = {3.0f, 0.002f * (i % 5), 0.2f + 0.01f * i}, .sigma_m = 0.01f});
+  for (int i = 0; i < 40; ++i)
+    pole.push_back({.position = {3.0f, 0.002f * (i % 5), 0.2f + 0.01f * i}, .sigma_m = 0.01f});
   map.Insert(pole, Pose::Identity(), 0.0);
   for (const bool tells : {false, true}) {
     Observation seen;
@@ -206,8 +215,10 @@ TEST(MovedAway, KeepsWhatPixelsThatDoNotTellStandFor) {
     for (int v = -24; v < 24; ++v)
       for (int u = -32; u < 32; ++u) {
         const Eigen::Vector3f ray = Eigen::Vector3f(1.0f, 0.011f * u, 0.011f * v).normalized();
-        if (u == 0 && !tells) seen.unknown_base.push_back(ray);
-        else seen.points_base.push_back({.position = seen.camera_base + 5.0f * ray});
+        if (u == 0 && !tells)
+          seen.unknown_base.push_back(ray);
+        else
+          seen.points_base.push_back({.position = seen.camera_base + 5.0f * ray});
       }
     std::vector<Keyframe> keyframes(4);
     for (Keyframe& keyframe : keyframes) keyframe.sights = {{.view = ClearView(seen)}};
@@ -241,7 +252,8 @@ TEST(MovedAway, AsksSightsWhereTheyWereAndInTheOrderOfTime) {
   EXPECT_LE(differ, 3);
 }
 
-// Points on a line across the way, 2 cm apart and 12 cm above the floor, and one on the floor; the car drives over them.
+// Points on a line across the way, 2 cm apart and 12 cm above the floor, and one on the floor; the car drives over
+// them.
 TEST(MovedAway, TakesOutWhatStoodWhereTheCarDrove) {
   const Pose T_map_way = FromXyYaw(2.0, -1.0, 2.0);
   std::vector<Point> line;
@@ -271,7 +283,8 @@ TEST(MovedAway, TakesOutWhatStoodWhereTheCarDrove) {
   EXPECT_EQ(std::ranges::count_if(left, [](double y) { return std::abs(y) > 0.105; }), 11);
 }
 
-// Stands before the box, which stays or goes: no new key frame is taken, and the sights are few, however long it stands.
+// Stands before the box, which stays or goes: no new key frame is taken, and the sights are few, however long it
+// stands.
 TEST(Slam, TakesOutOfItsMapWhatGoesAwayWhileTheCarStands) {
   for (const bool goes : {false, true}) {
     Slam slam({});

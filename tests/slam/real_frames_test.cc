@@ -22,7 +22,8 @@ fs::path RgbdFolder() { return SharedData("rgbd"); }
 // A Kinect-class camera as a sheet: every fourth pixel each way; so little noise that its sigma is a few millimetres.
 DepthCameraSheet Sheet() {
   DepthCameraSheet sheet;
-  sheet.camera = {.width = 160, .height = 120, .fx_px = 518.0 / 4, .fy_px = 519.0 / 4, .cx_px = 325.5 / 4, .cy_px = 253.5 / 4};
+  sheet.camera = {
+      .width = 160, .height = 120, .fx_px = 518.0 / 4, .fy_px = 519.0 / 4, .cx_px = 325.5 / 4, .cy_px = 253.5 / 4};
   sheet.signal_e_m2_per_us = 2000.0;
   sheet.contrast_at_20mhz = 0.45;
   sheet.contrast_corner_hz = 30e6;
@@ -82,7 +83,8 @@ Cloud ReadFreeCloud(int number) {
 Observation Perceive(int number) {
   const DepthCameraSheet sheet = Sheet();
   Observation observation;
-  ProjectDepth(FilterDepth(ReadFrame(number), sheet, {}), sheet, PixelRays(sheet.camera), Pose::Identity(), observation);
+  ProjectDepth(FilterDepth(ReadFrame(number), sheet, {}), sheet, PixelRays(sheet.camera), Pose::Identity(),
+               observation);
   return observation;
 }
 
@@ -117,7 +119,8 @@ TEST(RealFrames, AlignNeighboursAsFreeCloudsFromFifteenCentimetresAndFiveDegrees
     const Pose error = T_a_b.inverse() * result.T_target_source;
     const double error_mm = 1e3 * error.translation().norm();
     const double error_deg = LogSo3(error.linear()).norm() * 180.0 / std::numbers::pi;
-    std::printf("pair %zu-%zu: %.1f mm, %.2f deg, %d iterations\n", target, target + 1, error_mm, error_deg, result.iterations);
+    std::printf("pair %zu-%zu: %.1f mm, %.2f deg, %d iterations\n", target, target + 1, error_mm, error_deg,
+                result.iterations);
     EXPECT_TRUE(result.converged()) << target;
     EXPECT_EQ(result.method, AlignMethod::kGicp) << target;
     EXPECT_LT(error_mm, 40.0) << target;  // the given poses are another system's estimate
@@ -141,7 +144,8 @@ TEST(RealFrames, RegisterNeighboursFromFifteenCentimetresAndFiveDegreesAway) {
       map.Insert(a.points_base, Pose::Identity(), 0.0);
       IcpConfig config{.iterations_max = 60};
       config.kernel_m = 0.5 * voxel_m;
-      result = Register(Downsample(b.points_base, std::min(voxel_m, 0.1)), b.camera_base, map, {.T_map_base = result.T_map_base}, config);
+      result = Register(Downsample(b.points_base, std::min(voxel_m, 0.1)), b.camera_base, map,
+                        {.T_map_base = result.T_map_base}, config);
     }
     const Pose error = T_a_b.inverse() * result.T_map_base;
     const double error_deg = LogSo3(error.linear()).norm() * 180.0 / std::numbers::pi;

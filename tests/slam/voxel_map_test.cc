@@ -30,7 +30,8 @@ TEST(VoxelMap, FindsTheNearestSurfaceThatBruteForceFinds) {
     for (const Voxel& voxel : map.voxels()) {
       const Eigen::Vector3i cell(voxel.cell[0], voxel.cell[1], voxel.cell[2]);
       if (!voxel.has_normal() || (cell - home).cwiseAbs().maxCoeff() > 1) continue;
-      if (!expected || (voxel.mean - query.position).norm() < (expected->mean - query.position).norm()) expected = &voxel;
+      if (!expected || (voxel.mean - query.position).norm() < (expected->mean - query.position).norm())
+        expected = &voxel;
     }
     const Voxel* nearest = map.Nearest(query.position);
     ASSERT_EQ(nearest == nullptr, expected == nullptr);
@@ -47,7 +48,8 @@ TEST(NearestSearch, FindsTheMapsNearest) {
   for (const std::size_t expected_points : {0u, 100000u}) {
     NearestSearch search(map, expected_points);
     for (int round = 0; round < 2; ++round)
-      for (const Point& query : Scatter(2000, 1.5, 2)) ASSERT_EQ(search.Nearest(query.position), map.Nearest(query.position));
+      for (const Point& query : Scatter(2000, 1.5, 2))
+        ASSERT_EQ(search.Nearest(query.position), map.Nearest(query.position));
     EXPECT_EQ(search.Nearest({std::nanf(""), 0.0f, 0.0f}), nullptr);
     EXPECT_EQ(search.Nearest({1e30f, 0.0f, 0.0f}), nullptr);
   }
@@ -94,7 +96,8 @@ TEST(VoxelMap, ForgetsWhatWasNotSeenLately) {
 
 TEST(VoxelMap, WeighsPointsByTheirPrecision) {
   VoxelMap map({.voxel_m = 1.0});
-  const std::vector<Point> points{{.position = {0.2f, 0.5f, 0.5f}, .sigma_m = 0.01f}, {.position = {0.7f, 0.5f, 0.5f}, .sigma_m = 0.02f}};
+  const std::vector<Point> points{{.position = {0.2f, 0.5f, 0.5f}, .sigma_m = 0.01f},
+                                  {.position = {0.7f, 0.5f, 0.5f}, .sigma_m = 0.02f}};
   map.Insert(points, Pose::Identity(), 0.0);
   ASSERT_EQ(map.voxels().size(), 1u);
   EXPECT_NEAR(map.voxels()[0].mean.x(), (4.0 * 0.2 + 1.0 * 0.7) / 5.0, 1e-6);  // 1 / sigma^2: 4 to 1
@@ -103,21 +106,25 @@ TEST(VoxelMap, WeighsPointsByTheirPrecision) {
 TEST(VoxelMap, TakesTheColourOfTheBestView) {
   std::vector<Point> wall;
   for (int i = 0; i < 20; ++i)
-    for (int j = 0; j < 20; ++j) wall.push_back({.position = {0.5f, 0.025f * i + 0.0125f, 0.025f * j + 0.0125f}, .sigma_m = 0.01f});
+    for (int j = 0; j < 20; ++j)
+      wall.push_back({.position = {0.5f, 0.025f * i + 0.0125f, 0.025f * j + 0.0125f}, .sigma_m = 0.01f});
   VoxelMap map({});
   map.Insert(wall, Pose::Identity(), 0.0);
   const Voxel& voxel = *map.Nearest({0.5f, 0.25f, 0.25f});
   EXPECT_FALSE(voxel.has_color());
   // Red from 1 m in front; blue from 2 m away, at 60 deg: (cos 60 / 4)^2 = 1/64 of its weight.
   const auto paint = [&](std::array<std::uint8_t, 3> bgr, const Eigen::Vector3f& from) {
-    const std::vector<Point> point{{.position = voxel.mean, .bgr = bgr, .has_color = true}, {.position = voxel.mean, .bgr = {9, 9, 9}},
-                                   {.position = {std::nanf(""), 0.0f, 0.0f}, .has_color = true}, {.position = {5.0f, 0.0f, 0.0f}, .has_color = true}};
+    const std::vector<Point> point{{.position = voxel.mean, .bgr = bgr, .has_color = true},
+                                   {.position = voxel.mean, .bgr = {9, 9, 9}},
+                                   {.position = {std::nanf(""), 0.0f, 0.0f}, .has_color = true},
+                                   {.position = {5.0f, 0.0f, 0.0f}, .has_color = true}};
     map.Paint(point, from, Pose::Identity());
   };
   paint({200, 0, 0}, voxel.mean + Eigen::Vector3f(-1.0f, std::sqrt(3.0f), 0.0f));
   EXPECT_TRUE(voxel.bgr().isApprox(Eigen::Vector3d(200.0, 0.0, 0.0), 1e-9));
   paint({0, 0, 200}, voxel.mean - Eigen::Vector3f::UnitX());
-  EXPECT_TRUE(voxel.bgr().isApprox(Eigen::Vector3d(200.0 / 65.0, 0.0, 200.0 * 64.0 / 65.0), 1e-4)) << voxel.bgr().transpose();
+  EXPECT_TRUE(voxel.bgr().isApprox(Eigen::Vector3d(200.0 / 65.0, 0.0, 200.0 * 64.0 / 65.0), 1e-4))
+      << voxel.bgr().transpose();
 }
 
 TEST(VoxelMap, ForgetsTheVoxelsThatItIsTold) {
@@ -202,7 +209,8 @@ TEST(VoxelMap, GivesEveryVoxelTheSurfaceOfItsNeighbourhood) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& p : near) mean += p / static_cast<double>(near.size());
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const Eigen::Vector3d& p : near) covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(near.size());
+    for (const Eigen::Vector3d& p : near)
+      covariance += (p - mean) * (p - mean).transpose() / static_cast<double>(near.size());
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
     const Eigen::Vector3d values = solver.eigenvalues();
     if (values(0) > 0.9 * values(1)) continue;  // either direction would do
@@ -214,7 +222,8 @@ TEST(VoxelMap, GivesEveryVoxelTheSurfaceOfItsNeighbourhood) {
 
 TEST(Downsample, KeepsOneMeanPointAVoxel) {
   EXPECT_TRUE(Downsample({}, 0.1).empty());
-  const std::vector<Point> points{{.position = {0.01f, 0, 0}}, {.position = {0.03f, 0, 0}}, {.position = {-0.01f, 0, 0}}};
+  const std::vector<Point> points{
+      {.position = {0.01f, 0, 0}}, {.position = {0.03f, 0, 0}}, {.position = {-0.01f, 0, 0}}};
   const std::vector<Point> thin = Downsample(points, 0.1);
   ASSERT_EQ(thin.size(), 2u);
   EXPECT_NEAR(thin[0].position.x(), 0.02f, 1e-7f);

@@ -24,10 +24,12 @@ TEST(CalibrateCli, RefusesToCalibrateFromNothingUsable) {
   ExpectUsageError("calibrate odometry no.yaml --study", "several", folder.path());
   ExpectUsageError("calibrate odometry no.yaml", "no.yaml: cannot be read", folder.path());
   ExpectUsageError("calibrate odometry --robot moon", "--robot", folder.path());
-  ExpectUsageError("calibrate odometry --robot twin --set car.drivetrain.wheel_radius=1", "wheel_radius_factor", folder.path());
-  ExpectUsageError("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=nan", "wheel_radius_factor",
-                folder.path());
-  ExpectUsageError("calibrate odometry --robot twin --set car.drivetrain.surface=floor_ice", "floor_tiles", folder.path());
+  ExpectUsageError("calibrate odometry --robot twin --set car.drivetrain.wheel_radius=1", "wheel_radius_factor",
+                   folder.path());
+  ExpectUsageError("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=nan",
+                   "wheel_radius_factor", folder.path());
+  ExpectUsageError("calibrate odometry --robot twin --set car.drivetrain.surface=floor_ice", "floor_tiles",
+                   folder.path());
   std::ofstream(folder.path() / "d.yaml") << "straights: [{encoder_counts: 74112, distance_m: 5.0}]\n"
                                              "circles: [{steering_rad: 0.2, diameter_m: 3.2}]\n";
   ExpectUsageError("calibrate odometry d.yaml", "d.yaml: too few drives", folder.path());
@@ -37,10 +39,13 @@ TEST(CalibrateCli, RefusesToCalibrateFromNothingUsable) {
 
 TEST(CalibrateCli, CalibratesTheTwinToAFileThatAScenarioTakes) {
   const TemporaryFolder folder;
-  const Outcome outcome = Merlin("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=0.97", folder.path());
+  const Outcome outcome =
+      Merlin("calibrate odometry --robot twin --set car.drivetrain.wheel_radius_factor=0.97", folder.path());
   EXPECT_EQ(outcome.code, 0) << outcome.said;
-  const Outcome run = Merlin("run corridor_short --gl off --duration 1 --set checks={} --set car.calibration=calibration.yaml "
-                             "--set car.drivetrain.wheel_radius_factor=0.97", folder.path());
+  const Outcome run = Merlin(
+      "run corridor_short --gl off --duration 1 --set checks={} --set car.calibration=calibration.yaml "
+      "--set car.drivetrain.wheel_radius_factor=0.97",
+      folder.path());
   EXPECT_EQ(run.code, 0) << run.said;
 }
 

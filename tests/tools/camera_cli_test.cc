@@ -69,7 +69,8 @@ TEST(CameraCli, SaysWhatASheetIsThatIsNoTimeOfFlightCamera) {
   const std::string expected = "expected a time-of-flight camera, such as ";
   ExpectRefused("ccd --wall 2", "ccd: this is a colour camera; " + expected, folder.path());
   ExpectRefused("ccd --study noise", "ccd: this is a colour camera", folder.path());
-  std::ofstream(folder.path() / "webcam.yaml") << "name: webcam\nwidth_px: 640\nheight_px: 480\nfx_px: 500\nfy_px: 500\n";
+  std::ofstream(folder.path() / "webcam.yaml")
+      << "name: webcam\nwidth_px: 640\nheight_px: 480\nfx_px: 500\nfy_px: 500\n";
   ExpectRefused("webcam.yaml --wall 2", "webcam.yaml: this is a colour camera; " + expected, folder.path());
   std::ofstream(folder.path() / "drive.yaml") << "name: drive\nroom: hall\nduration_s: 5\n";
   ExpectRefused("drive.yaml --wall 2", "drive.yaml: this is no camera; " + expected, folder.path());

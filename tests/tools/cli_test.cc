@@ -25,8 +25,8 @@ void ExpectRefused(const std::string& arguments, const std::string& part, const 
 TEST(Cli, HelpFitsAScreen) {
   const TemporaryFolder folder;
   for (const char* arguments :
-       {"--help", "run --help", "drive --help", "list --help", "calibrate odometry --help", "doctor --help", "register --help",
-        "camera --help", "bench --help", "optimize --help", "eval --help"}) {
+       {"--help", "run --help", "drive --help", "list --help", "calibrate odometry --help", "doctor --help",
+        "register --help", "camera --help", "bench --help", "optimize --help", "eval --help"}) {
     const Outcome outcome = Merlin(arguments, folder.path());
     EXPECT_EQ(outcome.code, 0) << arguments;
     EXPECT_LE(std::ranges::count(outcome.said, '\n'), 40) << arguments;
@@ -69,20 +69,25 @@ TEST(Cli, RefusesBadScenariosRoomsAndCamerasWithExitTwo) {
   ExpectRefused("run corridor_short --set 'obstacles=[{appear_s: 8, disappear_s: 2}]'", "obstacles", folder.path());
   ExpectRefused("run corridor_short --set car.start.y_m=-8.5", "start", folder.path());
   ExpectRefused("run corridor_short --set car.start.y_m=-10.6", "start", folder.path());
-  std::ofstream(folder.path() / "broken.xml") << "<mujoco>\n<worldbody>\n<geom type='ball'/>\n</worldbody>\n</mujoco>\n";
+  std::ofstream(folder.path() / "broken.xml")
+      << "<mujoco>\n<worldbody>\n<geom type='ball'/>\n</worldbody>\n</mujoco>\n";
   ExpectRefused("run corridor_short --set room=broken.xml", "broken.xml:3", folder.path());
-  std::ofstream(folder.path() / "nan.xml") << "<mujoco><worldbody><geom name='floor' type='plane' size='9 9 1'/><geom type='box' size='1 1 1' pos='nan 0 0'/></worldbody></mujoco>";
+  std::ofstream(folder.path() / "nan.xml") << "<mujoco><worldbody><geom name='floor' type='plane' size='9 9 1'/><geom "
+                                              "type='box' size='1 1 1' pos='nan 0 0'/></worldbody></mujoco>";
   ExpectRefused("run corridor_short --set car.start.y_m=0 --set room=nan.xml", "nan.xml", folder.path());
-  std::ofstream(folder.path() / "bare.xml") << "<mujoco><worldbody><geom name='floor' type='plane' size='9 9 1'/></worldbody></mujoco>";
-  ExpectRefused("run corridor_short --set car.start.y_m=0 --set room=bare.xml --set checks.laps_min=1", "plan_xy_m", folder.path());
+  std::ofstream(folder.path() / "bare.xml")
+      << "<mujoco><worldbody><geom name='floor' type='plane' size='9 9 1'/></worldbody></mujoco>";
+  ExpectRefused("run corridor_short --set car.start.y_m=0 --set room=bare.xml --set checks.laps_min=1", "plan_xy_m",
+                folder.path());
   std::ofstream(folder.path() / "broken.urdf") << "<robot name='x'>\n<link name='base_link'>\n</robot>\n";
   ExpectRefused("run corridor_short --set car.model=broken.urdf", "broken.urdf:", folder.path());
   std::ofstream(folder.path() / "mapped.urdf") << "<robot name='x'><link name='base_link'/></robot>\n";
   std::ofstream(folder.path() / "mapped.mapping.yaml") << "compas_frame: base_link\n";
   ExpectRefused("run corridor_short --set car.model=mapped.urdf", "did you mean 'compass_frame'", folder.path());
   std::ofstream(folder.path() / "body.stl") << "no mesh";
-  std::ofstream(folder.path() / "meshed.urdf") << "<robot name='x'><link name='base_link'><visual><geometry><mesh filename='body.stl'/>"
-                                                  "</geometry></visual></link></robot>\n";
+  std::ofstream(folder.path() / "meshed.urdf")
+      << "<robot name='x'><link name='base_link'><visual><geometry><mesh filename='body.stl'/>"
+         "</geometry></visual></link></robot>\n";
   ExpectRefused("run corridor_short --set car.model=meshed.urdf", "body.stl: not a mesh", folder.path());
   std::ofstream(folder.path() / "broken.yaml") << "room: hall\nsensors: {depth: {camera: pmd_3k_s}\n";
   ExpectRefused("run broken.yaml", "broken.yaml:", folder.path());
@@ -92,9 +97,10 @@ TEST(Cli, SaysWhatACameraIsThatIsOfTheOtherKind) {
   const TemporaryFolder folder;
   for (const char* scenario : {"run corridor_short", "run corridor_short --robot emulated"}) {
     const std::string command = scenario + std::string(" --set sensors.");
-    ExpectRefused(command + "depth.camera=ccd", "ccd: this is a colour camera; expected a time-of-flight camera", folder.path());
-    ExpectRefused(command + "color.camera=pmd_a2", "pmd_a2: this is a time-of-flight camera; expected a colour camera, such as ccd",
+    ExpectRefused(command + "depth.camera=ccd", "ccd: this is a colour camera; expected a time-of-flight camera",
                   folder.path());
+    ExpectRefused(command + "color.camera=pmd_a2",
+                  "pmd_a2: this is a time-of-flight camera; expected a colour camera, such as ccd", folder.path());
   }
 }
 
@@ -110,7 +116,8 @@ TEST(Cli, NamesTheNearestOfWhatItDoesNotKnow) {
 
 TEST(Cli, KeepsTheUmlautsOfAScenario) {
   const TemporaryFolder folder;
-  std::filesystem::copy(std::filesystem::path(MERLIN_SOURCE_DIR) / "scenarios/corridor_short.yaml", folder.path() / "Prüfung Flur.yaml");
+  std::filesystem::copy(std::filesystem::path(MERLIN_SOURCE_DIR) / "scenarios/corridor_short.yaml",
+                        folder.path() / "Prüfung Flur.yaml");
   const Outcome outcome = Merlin("run 'Prüfung Flur.yaml' --gl off --duration 1 --set checks={}", folder.path());
   EXPECT_EQ(outcome.code, 0) << outcome.said;
   const std::filesystem::path out = folder.path() / "runs/Prüfung Flur-1";
@@ -155,7 +162,8 @@ TEST(Cli, EndsWithExit130AndAnInterruptedVerdictOnCtrlC) {
   const TemporaryFolder folder;
   const pid_t child = fork();
   if (child == 0) {
-    if (chdir(folder.path().c_str()) != 0 || !freopen("/dev/null", "w", stdout) || !freopen("said", "w", stderr)) _exit(99);
+    if (chdir(folder.path().c_str()) != 0 || !freopen("/dev/null", "w", stdout) || !freopen("said", "w", stderr))
+      _exit(99);
     execl(MERLIN_BINARY, "merlin", "run", "corridor_short", "--gl", "off", "--pace", "10", "--out", "o", nullptr);
     _exit(98);
   }
@@ -197,7 +205,8 @@ TEST(Cli, ListsWhatThereIs) {
   const TemporaryFolder folder;
   const Outcome outcome = Merlin("list", folder.path());
   EXPECT_EQ(outcome.code, 0);
-  for (const char* name : {"corridor_loop", "corridor_obstacle", "corridor_short", "pmd_3k_s", "ccd", "corridor_26x21", "hall", "follow_corridor"})
+  for (const char* name : {"corridor_loop", "corridor_obstacle", "corridor_short", "pmd_3k_s", "ccd", "corridor_26x21",
+                           "hall", "follow_corridor"})
     EXPECT_NE(outcome.said.find(name), std::string::npos) << name;
 }
 

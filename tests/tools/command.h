@@ -27,7 +27,8 @@ inline Outcome Run(const std::string& command, const std::filesystem::path& fold
 }
 
 // The program under test with these arguments; streams: where its own go.
-inline Outcome Merlin(const std::string& arguments, const std::filesystem::path& folder, const std::string& streams = "2>&1") {
+inline Outcome Merlin(const std::string& arguments, const std::filesystem::path& folder,
+                      const std::string& streams = "2>&1") {
   return Run("'" MERLIN_BINARY "' " + arguments + " " + streams, folder);
 }
 

@@ -23,13 +23,15 @@ TEST(DoctorCli, CountsWhatIsInMerlinHome) {
   fs::create_directory(folder.path() / "home");
   fs::copy(fs::path(MERLIN_SOURCE_DIR) / "models", folder.path() / "home/models", fs::copy_options::recursive);
   fs::copy(fs::path(MERLIN_SOURCE_DIR) / "scenarios", folder.path() / "home/scenarios");
-  for (const char* room : {"hall", "wall_7", "bend_10"}) fs::remove(folder.path() / "home/models/rooms" / (std::string(room) + ".xml"));
+  for (const char* room : {"hall", "wall_7", "bend_10"})
+    fs::remove(folder.path() / "home/models/rooms" / (std::string(room) + ".xml"));
   const auto files_in = [](const char* name) {
     return std::distance(fs::directory_iterator(fs::path(MERLIN_SOURCE_DIR) / "models" / name), {});
   };
   const std::string cameras = std::to_string(files_in("cameras")) + " cameras";
   const std::string rooms_here = std::to_string(files_in("rooms")) + " rooms, " + cameras;
-  const std::string rooms_there = "home: the car, materials, " + std::to_string(files_in("rooms") - 3) + " rooms, " + cameras;
+  const std::string rooms_there =
+      "home: the car, materials, " + std::to_string(files_in("rooms") - 3) + " rooms, " + cameras;
   const Outcome here = Merlin("doctor", folder.path()), there = WithHome("home", "doctor", folder.path());
   EXPECT_EQ(there.code, here.code);
   EXPECT_NE(here.said.find(rooms_here), std::string::npos) << here.said;

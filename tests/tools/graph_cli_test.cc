@@ -124,7 +124,8 @@ TEST(EvalCli, GivesTheFiguresByHand) {
   const nlohmann::json figures = Json("eval truth.tum estimate.tum", straight.folder.path());
   EXPECT_EQ(figures["pairs"], 61);
   EXPECT_NEAR(figures["ate_rmse_m"], 0.01, 1e-5);
-  EXPECT_NEAR(figures["ate_max_m"], 0.01, 6e-4);  // an odd number of them: the mean is off by 0.01 / 61, and the fit tilts
+  EXPECT_NEAR(figures["ate_max_m"], 0.01,
+              6e-4);  // an odd number of them: the mean is off by 0.01 / 61, and the fit tilts
   EXPECT_NEAR(figures["rpe_rotation_rmse_deg"], 0.0, 1e-6);
   EXPECT_EQ(figures["scale"], 1.0);
   const nlohmann::json none = Json("eval truth.tum estimate.tum --align none --delta 100", straight.folder.path());
@@ -246,9 +247,9 @@ TEST(EvalCli, PairsEqualStampsAsEvoDoes) {
     write("estimate.tum", poses);
     const std::string files = " truth.tum estimate.tum ";
     const std::string ape = Evo("evo_ape", "tum" + files + "-a --t_max_diff 0.2", folder.path());
-    const std::string rpe = Evo("evo_rpe", "tum" + files +
-                                    "--delta 1 --delta_unit m --all_pairs --pairs_from_reference --t_max_diff 0.2",
-                                folder.path());
+    const std::string rpe =
+        Evo("evo_rpe", "tum" + files + "--delta 1 --delta_unit m --all_pairs --pairs_from_reference --t_max_diff 0.2",
+            folder.path());
     const nlohmann::json figures = Json("eval" + files + "--max-difference 0.2", folder.path());
     EXPECT_EQ(figures["warnings"].size(), 2u);
     for (const std::string name : {"rmse", "mean", "max"}) {

@@ -28,7 +28,8 @@ TEST(JsonCli, CalibrateNamesItsFileWhateverIsInTheName) {
   const Json json = Parsed("calibrate odometry --robot twin --out 'a \"b\" \\ ü.yaml'", 0, folder.path());
   EXPECT_EQ(json["file"], "a \"b\" \\ ü.yaml");
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "a \"b\" \\ ü.yaml"));
-  for (const char* key : {"wheel_radius_m", "wheelbase_m", "residual_rms"}) EXPECT_GT(json[key].get<double>(), 0.0) << key;
+  for (const char* key : {"wheel_radius_m", "wheelbase_m", "residual_rms"})
+    EXPECT_GT(json[key].get<double>(), 0.0) << key;
   EXPECT_TRUE(json["steering_offset_rad"].is_number());
 }
 
@@ -40,13 +41,16 @@ TEST(JsonCli, CalibrateStudyIsAList) {
   fs::create_directories(home / "models");
   fs::create_directory_symlink(source / "scenarios", home / "scenarios");
   for (const fs::directory_entry& entry : fs::directory_iterator(source / "models"))
-    if (entry.path().filename() != "materials.yaml") fs::create_symlink(entry, home / "models" / entry.path().filename());
+    if (entry.path().filename() != "materials.yaml")
+      fs::create_symlink(entry, home / "models" / entry.path().filename());
   std::istringstream materials(Contents(source / "models/materials.yaml"));
   std::ofstream one_floor(home / "models/materials.yaml");
   for (std::string line; std::getline(materials, line);)
-    if (line.find(" floor_") == std::string::npos || line.find(" floor_tiles:") != std::string::npos) one_floor << line << "\n";
+    if (line.find(" floor_") == std::string::npos || line.find(" floor_tiles:") != std::string::npos)
+      one_floor << line << "\n";
   one_floor.close();
-  const Outcome outcome = merlin::Run("MERLIN_HOME=home '" MERLIN_BINARY "' calibrate odometry --study --json 2>said", folder.path());
+  const Outcome outcome =
+      merlin::Run("MERLIN_HOME=home '" MERLIN_BINARY "' calibrate odometry --study --json 2>said", folder.path());
   EXPECT_EQ(outcome.code, 0) << Contents(folder.path() / "said");
   const Json json = Json::parse(outcome.said);
   ASSERT_GE(json.size(), 2u);
@@ -104,8 +108,8 @@ TEST(JsonCli, NothingIsOnStandardOutputWhereTheInputIsBad) {
   const TemporaryFolder folder;
   for (const char* arguments :
        {"run none", "camera none --wall 2", "camera pmd_3k_s", "calibrate odometry none.yaml", "calibrate odometry",
-        "register none.ply none.ply", "optimize none.g2o", "eval none.tum none.tum", "bench none", "doctor --robot moon",
-        "doctor --robot hardware:none.yaml", "doctor --bogus"}) {
+        "register none.ply none.ply", "optimize none.g2o", "eval none.tum none.tum", "bench none",
+        "doctor --robot moon", "doctor --robot hardware:none.yaml", "doctor --bogus"}) {
     const Outcome outcome = Merlin(std::string(arguments) + " --json", folder.path(), "2>said");
     EXPECT_EQ(outcome.code, 2) << arguments;
     EXPECT_EQ(outcome.said, "") << arguments;

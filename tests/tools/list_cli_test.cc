@@ -32,7 +32,8 @@ TEST(ListCli, SaysOneWholeSentenceOfEach) {
     EXPECT_EQ(line.find("Origin of each number"), std::string::npos) << line;
   }
   EXPECT_GE(items, 9 + 11 + 6 + 2);
-  EXPECT_NE(outcome.said.find("The car drives one lap of the closed-loop corridor, about 87 m at 0.5 m/s.\n"), std::string::npos);
+  EXPECT_NE(outcome.said.find("The car drives one lap of the closed-loop corridor, about 87 m at 0.5 m/s.\n"),
+            std::string::npos);
   EXPECT_NE(outcome.said.find("which turns on a stand: the wall"), std::string::npos);  // a sentence of four lines
 }
 
@@ -59,20 +60,23 @@ TEST(ListCli, TakesTheFilesOfAHomeAsTheyAre) {
   fs::create_directories(folder.path() / "models/rooms");
   std::ofstream(folder.path() / "scenarios/prüfstand.yaml") << "# Die Prüfung der\n# Wände. Mehr nicht.\nroom: x\n";
   std::ofstream(folder.path() / "scenarios/bare.yaml") << "room: x\n";
-  std::ofstream(folder.path() / "scenarios/latin.yaml") << "# K\xe4" "fer.\nroom: x\n";
-  std::ofstream(folder.path() / "models/rooms/attic.xml") << "<mujoco>\n<!--\n  An attic\n  with beams. -->\n</mujoco>\n";
+  std::ofstream(folder.path() / "scenarios/latin.yaml") << "# K\xe4"
+                                                           "fer.\nroom: x\n";
+  std::ofstream(folder.path() / "models/rooms/attic.xml")
+      << "<mujoco>\n<!--\n  An attic\n  with beams. -->\n</mujoco>\n";
   const Outcome outcome = merlin::Run("MERLIN_HOME=. '" MERLIN_BINARY "' list", folder.path());
   EXPECT_EQ(outcome.code, 0);
   EXPECT_NE(outcome.said.find("  prüfstand            Die Prüfung der Wände.\n"), std::string::npos) << outcome.said;
-  EXPECT_NE(outcome.said.find("  bare                 Its file begins with no comment"), std::string::npos) << outcome.said;
+  EXPECT_NE(outcome.said.find("  bare                 Its file begins with no comment"), std::string::npos)
+      << outcome.said;
   EXPECT_NE(outcome.said.find("  latin                K?fer.\n"), std::string::npos) << outcome.said;
   EXPECT_NE(outcome.said.find("  attic                An attic with beams.\n"), std::string::npos) << outcome.said;
 }
 
 TEST(ProgressCli, FitsTheTerminal) {
   const TemporaryFolder folder;
-  const Outcome outcome =
-      OnTerminal("'" MERLIN_BINARY "' run corridor_short --gl off --duration 3 --pace 3 --out o >printed", 30, folder.path());
+  const Outcome outcome = OnTerminal(
+      "'" MERLIN_BINARY "' run corridor_short --gl off --duration 3 --pace 3 --out o >printed", 30, folder.path());
   EXPECT_EQ(outcome.code, 1) << outcome.said;
   EXPECT_NE(outcome.said.find(" s of 3 s, "), std::string::npos) << outcome.said;
   EXPECT_EQ(Longest(ScreenLines(outcome.said)), 29u) << outcome.said;  // one column stays free

@@ -44,10 +44,13 @@ class OutCli : public testing::Test {
     EXPECT_EQ(Contents(At("mine/letter.txt")), "dear");
   }
 
-  const std::vector<std::string> folder_commands_{
-      "run corridor_short --gl off --duration 1", "run corridor_short --gl off --set sensors.color.required=true",
-      "run corridor_short --robot emulated --gl off", "run corridor_short --robot hardware:hardware.yaml",
-      "drive corridor_short --keyboard --gl off", "camera pmd_3k_s --wall 2 --frames 1", "camera pmd_3k_s --study noise"};
+  const std::vector<std::string> folder_commands_{"run corridor_short --gl off --duration 1",
+                                                  "run corridor_short --gl off --set sensors.color.required=true",
+                                                  "run corridor_short --robot emulated --gl off",
+                                                  "run corridor_short --robot hardware:hardware.yaml",
+                                                  "drive corridor_short --keyboard --gl off",
+                                                  "camera pmd_3k_s --wall 2 --frames 1",
+                                                  "camera pmd_3k_s --study noise"};
   const std::vector<std::string> file_commands_{"calibrate odometry --robot twin", "register cloud.csv cloud.csv",
                                                 "optimize graph.g2o"};
 

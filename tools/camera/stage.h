@@ -50,7 +50,7 @@ struct RoomView {
   std::filesystem::path room, materials;
   bool curtain_closed = false;
   Pose T_world_body = Pose::Identity();  // of the camera: x forward, y left, z up
-  std::optional<double> sun_w_m2_nm{};     // instead of the room's
+  std::optional<double> sun_w_m2_nm{};   // instead of the room's
 };
 // Throws InputError: a room or materials file that cannot be used, nothing to see in it, a camera inside a geom, a sun
 // set where the room has none.

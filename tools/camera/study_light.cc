@@ -10,7 +10,6 @@
 namespace merlin::study {
 namespace {
 
-
 // Two walls that meet at a right angle on the axis, this far away; the axis halves the angle.
 struct Corner {
   double distance_m;
@@ -34,8 +33,8 @@ Stage CornerStage(double distance_m, double albedo) {
   const double along = kLength_m / std::numbers::sqrt2, behind = kThickness_m / std::numbers::sqrt2;
   return BuildStage(fmt::format("<geom type='box' size='{0} {1} {0}' pos='{2} {3} 0' euler='0 0 {4}'/><geom type='box' "
                                 "size='{0} {1} {0}' pos='{2} {5} 0' euler='0 0 {6}'/>",
-                                kLength_m, kThickness_m, distance_m - along + behind, along + behind, 0.75 * std::numbers::pi,
-                                -along - behind, 0.25 * std::numbers::pi),
+                                kLength_m, kThickness_m, distance_m - along + behind, along + behind,
+                                0.75 * std::numbers::pi, -along - behind, 0.25 * std::numbers::pi),
                     {{.nir_albedo = albedo}, {.nir_albedo = albedo}});
 }
 

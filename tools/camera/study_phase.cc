@@ -63,8 +63,7 @@ Figure Motion(const StudyCamera& of) {
   for (const double speed_m_s : {0.5, 1.0, 2.0}) {
     Series law{.name = fmt::format("four phases by formula, {:g} m/s", speed_m_s), .color = color};
     Series dots{.name = "samples, moving away", .dots = true, .color = color++};
-    for (const double d : Steps(0.5, 5.0, 200))
-      law.Add(d, 1e3 * MovingError_m(camera, d, speed_m_s, step_s));
+    for (const double d : Steps(0.5, 5.0, 200)) law.Add(d, 1e3 * MovingError_m(camera, d, speed_m_s, step_s));
     for (const double d : Steps(0.5, 5.0, 46))
       dots.Add(d, 1e3 * Error_m(camera, Only({&sim::TofEffects::motion}), wall, d, speed_m_s));
     panel.series.push_back(law);

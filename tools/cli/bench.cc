@@ -54,9 +54,10 @@ void AddBench(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<BenchArguments>();
   CLI::App* bench = app.add_subcommand("bench", "how long things take on this machine");
   bench
-      ->add_option("what", arguments->what,
-                   "camera: frames and rays in corridor_26x21; physics: steps in room_7x10; slam: filter to pose, and a lap "
-                   "that closes a loop; register: clouds, beside small_gicp")
+      ->add_option(
+          "what", arguments->what,
+          "camera: frames and rays in corridor_26x21; physics: steps in room_7x10; slam: filter to pose, and a lap "
+          "that closes a loop; register: clouds, beside small_gicp")
       ->required()
       ->check(CLI::IsMember({"camera", "physics", "register", "slam"}));
   bench->add_option("--threads", arguments->threads, "of the cameras, measured beside one thread; default 2")

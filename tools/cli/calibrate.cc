@@ -66,8 +66,9 @@ void Finish(const CalibrateArguments& arguments, const CarDescription& car, cons
     return;
   }
   Print(car, found, true_car);
-  fmt::print("  residuals {:.2f} of what the tape and the play allow\nfile: {} (for a scenario: car: {{calibration: {}}})\n",
-             found.residual_rms, arguments.out, arguments.out);
+  fmt::print(
+      "  residuals {:.2f} of what the tape and the play allow\nfile: {} (for a scenario: car: {{calibration: {}}})\n",
+      found.residual_rms, arguments.out, arguments.out);
 }
 
 #if MERLIN_TWIN
@@ -95,9 +96,9 @@ int StudyOdometry(const CalibrateArguments& arguments) {
   for (const auto& [surface, material] : materials.by_name) {
     if (!surface.starts_with("floor_")) continue;
     if (interrupted) return kInterrupted;
-    const sim::WorldOptions twin =
-        TwinOf(arguments, {"car.drivetrain={wheel_radius_factor: 0.98, wheelbase_factor: 1.03, steering_offset_rad: 0.015}",
-                           "car.drivetrain.surface=" + surface});
+    const sim::WorldOptions twin = TwinOf(
+        arguments, {"car.drivetrain={wheel_radius_factor: 0.98, wheelbase_factor: 1.03, steering_offset_rad: 0.015}",
+                    "car.drivetrain.surface=" + surface});
     const CarCalibration calibration = Solve(twin.car, DriveAndMeasure(twin), "the twin's drives on " + surface).value;
     for (const Manoeuvre& m : DriveManoeuvres(twin, calibration)) {
       const double before = 100.0 * m.error_before_m / m.path_m, after = 100.0 * m.error_after_m / m.path_m;
@@ -107,15 +108,17 @@ int StudyOdometry(const CalibrateArguments& arguments) {
                       {"path_m", m.path_m},
                       {"before_percent", before},
                       {"after_percent", after}});
-      rows += fmt::format("  {:<16} {:<20} {:>7.2f} m {:>9.2f} % {:>9.2f} %\n", surface, m.name, m.path_m, before, after);
+      rows +=
+          fmt::format("  {:<16} {:<20} {:>7.2f} m {:>9.2f} % {:>9.2f} %\n", surface, m.name, m.path_m, before, after);
     }
   }
   if (arguments.json)
     fmt::print("{}", JsonText(json));
   else
-    fmt::print("odometry's error of position at the end of a manoeuvre, in percent of its path; limit {:g} % after\n"
-               "  {:<16} {:<20} {:>9} {:>11} {:>11}\n{}",
-               kLimit_percent, "surface", "manoeuvre", "path", "before", "after", rows);
+    fmt::print(
+        "odometry's error of position at the end of a manoeuvre, in percent of its path; limit {:g} % after\n"
+        "  {:<16} {:<20} {:>9} {:>11} {:>11}\n{}",
+        kLimit_percent, "surface", "manoeuvre", "path", "before", "after", rows);
   return pass ? kPass : kFail;
 }
 
@@ -127,10 +130,11 @@ int StudyOdometry(const CalibrateArguments&) { throw MachineError("this build ha
 #endif
 
 int Calibrate(const CalibrateArguments& arguments) {
-  const int sources = (arguments.drives.empty() ? 0 : 1) + (arguments.robot.empty() ? 0 : 1) + (arguments.study ? 1 : 0);
+  const int sources =
+      (arguments.drives.empty() ? 0 : 1) + (arguments.robot.empty() ? 0 : 1) + (arguments.study ? 1 : 0);
   if (sources != 1)
-    throw InputError("calibrate odometry", "what is it to calibrate from?", "one of a file of drives, --robot twin or --study",
-                     sources == 0 ? "none" : "several");
+    throw InputError("calibrate odometry", "what is it to calibrate from?",
+                     "one of a file of drives, --robot twin or --study", sources == 0 ? "none" : "several");
   if (arguments.study) return StudyOdometry(arguments);
   CheckOutputFile(arguments.out);
   if (!arguments.robot.empty()) return CalibrateTwin(arguments);
@@ -145,7 +149,8 @@ void AddCalibrate(CLI::App& app, int& exit_code) {
   const auto a = std::make_shared<CalibrateArguments>();
   CLI::App* calibrate = app.add_subcommand("calibrate", "finds the values that a description only estimates");
   calibrate->require_subcommand(1);
-  CLI::App* odometry = calibrate->add_subcommand("odometry", "wheel radius, wheelbase and steering offset, from drives");
+  CLI::App* odometry =
+      calibrate->add_subcommand("odometry", "wheel radius, wheelbase and steering offset, from drives");
   odometry->add_option("drives", a->drives,
                        "YAML: straights: [{encoder_counts, distance_m}], circles: [{steering_rad, diameter_m}]");
   odometry->add_option("--robot", a->robot, "twin: lets it drive and measures it, tape errors included")

@@ -72,8 +72,8 @@ std::string XmlParagraph(std::string_view text) {
 
 // Whether the full stop behind a word shortens it: "e.g.", "No.", "Dr.".
 bool IsShortened(std::string_view word) {
-  constexpr std::string_view kShortened[] = {"approx", "bzw", "ca", "cf", "Dr", "Eq", "Fig", "incl", "inkl",
-                                             "Mr",     "Mrs", "Ms", "No", "Nr", "Prof", "St", "vs"};
+  constexpr std::string_view kShortened[] = {"approx", "bzw", "ca", "cf", "Dr", "Eq",   "Fig", "incl", "inkl",
+                                             "Mr",     "Mrs", "Ms", "No", "Nr", "Prof", "St",  "vs"};
   while (!word.empty() && (word.front() == '(' || word.front() == '"')) word.remove_prefix(1);
   const bool has_letter = std::ranges::any_of(word, [](unsigned char c) { return std::isalpha(c) != 0; });
   return (has_letter && word.find('.') != std::string_view::npos && word.size() < 6) ||

@@ -68,7 +68,8 @@ void PrintText(const Report& report) {
   const Models& models = report.models;
   fmt::print("models    {}: {}, {}, {} rooms, {} cameras, {} scenarios\n", models.home.string(),
              models.car ? "the car" : "no car (models/<name>/<name>.urdf)",
-             models.materials ? "materials" : "no models/materials.yaml", models.rooms, models.cameras, models.scenarios);
+             models.materials ? "materials" : "no models/materials.yaml", models.rooms, models.cameras,
+             models.scenarios);
   fmt::print("with     ");
   for (const LinkedWork& work : LinkedWorks())
     if (!work.version.empty()) fmt::print(" {} {};", work.name, work.version);
@@ -85,20 +86,19 @@ void PrintJson(const Report& report) {
   for (const GlProbe& probe : report.gl)
     gl.push_back({{"backend", probe.backend}, {"works", probe.works}, {"detail", probe.detail}});
   const Models& models = report.models;
-  const Json whole{
-      {"well", report.ExitCode() == 0},
-      {"twin", MERLIN_TWIN != 0},
-      {"build", MERLIN_BUILD},
-      {"cpu_cores", report.cpu_cores},
-      {"gl", gl},
-      {"models",
-       {{"folder", (models.home / "models").string()},
-        {"car", models.car},
-        {"materials", models.materials},
-        {"rooms", models.rooms},
-        {"cameras", models.cameras},
-        {"scenarios", models.scenarios}}},
-      {"versions", versions}};
+  const Json whole{{"well", report.ExitCode() == 0},
+                   {"twin", MERLIN_TWIN != 0},
+                   {"build", MERLIN_BUILD},
+                   {"cpu_cores", report.cpu_cores},
+                   {"gl", gl},
+                   {"models",
+                    {{"folder", (models.home / "models").string()},
+                     {"car", models.car},
+                     {"materials", models.materials},
+                     {"rooms", models.rooms},
+                     {"cameras", models.cameras},
+                     {"scenarios", models.scenarios}}},
+                   {"versions", versions}};
   fmt::print("{}", JsonText(whole));
 }
 

@@ -73,7 +73,8 @@ class Station {
   std::optional<RawTerminal> terminal_;
 };
 
-// What the operator sees: five times a second on a terminal, once a second elsewhere, and at once when the driver changes.
+// What the operator sees: five times a second on a terminal, once a second elsewhere, and at once when the driver
+// changes.
 class StatusLine {
  public:
   void Show(Time now, const HandStatus& status) {
@@ -177,8 +178,7 @@ void AddDrive(CLI::App& app, int& exit_code) {
   drive->add_option("--speed", arguments->speed_m_s, "m/s at full stick; default 0.8")->check(TopSpeed);
   drive->add_option("--duration", arguments->duration_s, "seconds after which it ends; default 3600");
   drive->add_option("--seed", arguments->seed, "of all randomness; default the scenario's")->check(WholeNumber);
-  drive->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-drive")
-      ->check(NotEmpty);
+  drive->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-drive")->check(NotEmpty);
   drive->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")
       ->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
   drive

@@ -43,7 +43,7 @@ std::string Span(const Trajectory& trajectory) {
 }
 
 // Whether the positions are the same but for the last digits of a file; of at least one pair.
-bool InOnePlace(const std::vector<PosePair>& pairs, Pose PosePair::* side) {
+bool InOnePlace(const std::vector<PosePair>& pairs, Pose PosePair::*side) {
   constexpr double kSame_m = 1e-6;
   return std::ranges::all_of(pairs, [&](const PosePair& pair) {
     return ((pair.*side).translation() - (pairs.front().*side).translation()).norm() <= kSame_m;
@@ -53,15 +53,17 @@ bool InOnePlace(const std::vector<PosePair>& pairs, Pose PosePair::* side) {
 // Three positions at least, and not all the same, are what an alignment and a figure need.
 void CheckPairs(const EvalArguments& arguments, const std::vector<PosePair>& pairs) {
   if (pairs.size() < 3)
-    throw InputError(arguments.estimate, "too few pairs for a figure",
-                     fmt::format("3 or more stamps within {} s of one of {}", arguments.max_difference_s,
-                                 arguments.truth),
-                     fmt::format("{}", pairs.size()));
-  for (const auto& [file, side] : {std::pair{arguments.truth, &PosePair::T_world_base},
-                                   std::pair{arguments.estimate, &PosePair::T_map_base}})
+    throw InputError(
+        arguments.estimate, "too few pairs for a figure",
+        fmt::format("3 or more stamps within {} s of one of {}", arguments.max_difference_s, arguments.truth),
+        fmt::format("{}", pairs.size()));
+  for (const auto& [file, side] :
+       {std::pair{arguments.truth, &PosePair::T_world_base}, std::pair{arguments.estimate, &PosePair::T_map_base}})
     if (InOnePlace(pairs, side))
-      throw InputError(file, fmt::format("the positions of all {} pairs are in one place: nothing tells turn or scale",
-                                         pairs.size()), "a path");
+      throw InputError(
+          file,
+          fmt::format("the positions of all {} pairs are in one place: nothing tells turn or scale", pairs.size()),
+          "a path");
 }
 
 Evaluation Evaluate(const EvalArguments& arguments) {

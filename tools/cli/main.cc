@@ -52,7 +52,7 @@ int Main(int argc, char** argv) {
 }  // namespace merlin::cli
 
 int main(int argc, char** argv) {
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = merlin::cli::OnInterrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);

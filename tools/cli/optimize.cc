@@ -73,14 +73,19 @@ void Print(const OptimizeArguments& arguments, const Solution& solution) {
   const PoseGraph& graph = solution.file.graph;
   const double a = Evaluate(graph, Objective::kA), b = Evaluate(graph, Objective::kB);
   if (arguments.json) {
-    const nlohmann::ordered_json whole{
-        {"file", arguments.graph},           {"poses", graph.poses.size()},
-        {"edges", graph.edges.size()},       {"parts", solution.parts},
-        {"planar", graph.planar},            {"objective", arguments.objective},
-        {"objective_a", a},                  {"objective_b", b},
-        {"converged", solution.converged},   {"iterations", solution.iterations},
-        {"time_s", solution.time_s},         {"iteration_ms", solution.iteration_ms},
-        {"warnings", solution.file.warnings}};
+    const nlohmann::ordered_json whole{{"file", arguments.graph},
+                                       {"poses", graph.poses.size()},
+                                       {"edges", graph.edges.size()},
+                                       {"parts", solution.parts},
+                                       {"planar", graph.planar},
+                                       {"objective", arguments.objective},
+                                       {"objective_a", a},
+                                       {"objective_b", b},
+                                       {"converged", solution.converged},
+                                       {"iterations", solution.iterations},
+                                       {"time_s", solution.time_s},
+                                       {"iteration_ms", solution.iteration_ms},
+                                       {"warnings", solution.file.warnings}};
     fmt::print("{}\n", whole.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return;
   }

@@ -148,9 +148,8 @@ std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
     text += fmt::format("not held: move {:.3f} {:.3f} {:.3f}, turn {:.3f} {:.3f} {:.3f}\n", d(0), d(1), d(2), d(3),
                         d(4), d(5));
   if (clouds.source.left_out + clouds.target.left_out > 0)
-    text +=
-        fmt::format("left out: {} and {} points whose coordinates are empty, not finite or beyond 1e9 m\n",
-                    clouds.source.left_out, clouds.target.left_out);
+    text += fmt::format("left out: {} and {} points whose coordinates are empty, not finite or beyond 1e9 m\n",
+                        clouds.source.left_out, clouds.target.left_out);
   const std::string thinned =
       clouds.thin.voxel_m > 0.0 ? fmt::format(" (voxels of {:.3g} m)", clouds.thin.voxel_m) : "";
   return text + fmt::format("{}: {} onto {} points{}, {} iterations, {:.1f} ms\n",

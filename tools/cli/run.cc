@@ -34,7 +34,10 @@ struct RunArguments {
 }  // namespace
 
 sim::Gl GlOf(const std::string& name) {
-  return name == "egl" ? sim::Gl::kEgl : name == "osmesa" ? sim::Gl::kOsmesa : name == "off" ? sim::Gl::kOff : sim::Gl::kAuto;
+  return name == "egl"      ? sim::Gl::kEgl
+         : name == "osmesa" ? sim::Gl::kOsmesa
+         : name == "off"    ? sim::Gl::kOff
+                            : sim::Gl::kAuto;
 }
 
 namespace {
@@ -48,7 +51,8 @@ double PaceOf(const std::string& text) {
     pace = std::stod(text, &used);
   } catch (const std::exception&) {
   }
-  if (used != text.size() || !(pace > 0.0) || !(pace < 1e6)) throw InputError("--pace", "unknown pace", "fast, real or a number > 0", "'" + text + "'");
+  if (used != text.size() || !(pace > 0.0) || !(pace < 1e6))
+    throw InputError("--pace", "unknown pace", "fast, real or a number > 0", "'" + text + "'");
   return pace;
 }
 
@@ -94,12 +98,13 @@ void PrintSummary(const RunReport& report, const std::filesystem::path& out) {
   const Metrics& m = result.metrics;
   fmt::print("{} seed {}: {}\n", result.scenario, result.seed, Name(result.verdict));
   for (const Check& check : result.checks)
-    fmt::print("  {} {:<32} {} (limit {:g})\n", check.pass ? "pass" : "FAIL", check.name, Number(check.value, 3), check.limit);
+    fmt::print("  {} {:<32} {} (limit {:g})\n", check.pass ? "pass" : "FAIL", check.name, Number(check.value, 3),
+               check.limit);
   if (result.checks.empty()) fmt::print("  nothing was checked: the scenario has no checks\n");
   if (!result.fault.empty()) fmt::print("  stopped: {}\n", result.fault);
   if (!report.note.empty()) fmt::print("  note: {}\n", report.note);
-  fmt::print("  drove {} m in {} s, {} laps, {} collisions\n", Number(m.distance_m, 2), Number(m.sim_time_s, 1), m.laps.value_or(0),
-             m.collisions.value_or(0));
+  fmt::print("  drove {} m in {} s, {} laps, {} collisions\n", Number(m.distance_m, 2), Number(m.sim_time_s, 1),
+             m.laps.value_or(0), m.collisions.value_or(0));
   if (m.map_size_m[0] && m.map_size_m[1])
     fmt::print("  map {} x {} m, off the plan by {} and {} %\n", Number(m.map_size_m[0], 2), Number(m.map_size_m[1], 2),
                Number(m.map_size_error_percent[0], 2), Number(m.map_size_error_percent[1], 2));
@@ -130,8 +135,9 @@ int Run(const RunArguments& arguments) {
   if (!arguments.duration_s.empty()) sets.push_back("duration_s=" + arguments.duration_s);
   options.scenario = ReadScenario(arguments.scenario, sets);
   SetRobot(arguments.robot, options);
-  options.out = arguments.out.empty() ? std::filesystem::path("runs") / fmt::format("{}-{}", options.name, options.scenario.seed)
-                                      : std::filesystem::path(arguments.out);
+  options.out = arguments.out.empty()
+                    ? std::filesystem::path("runs") / fmt::format("{}-{}", options.name, options.scenario.seed)
+                    : std::filesystem::path(arguments.out);
   options.gl = GlOf(arguments.gl);
   options.threads = arguments.threads;
   options.pace = PaceOf(arguments.pace);
@@ -140,7 +146,9 @@ int Run(const RunArguments& arguments) {
   {
     Progress progress(options.scenario.duration_s);
     if (!arguments.json)
-      options.progress = [&progress](Time now, double distance_m, const std::string& doing) { progress.Show(now, distance_m, doing); };
+      options.progress = [&progress](Time now, double distance_m, const std::string& doing) {
+        progress.Show(now, distance_m, doing);
+      };
     report = RunScenario(options, interrupted);
   }
   if (arguments.json) {
@@ -151,7 +159,9 @@ int Run(const RunArguments& arguments) {
   }
   std::fflush(stdout);  // what was told so far comes before the error
   if (report.error) std::rethrow_exception(report.error);
-  return report.result.verdict == Verdict::kPass ? kPass : report.result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
+  return report.result.verdict == Verdict::kPass          ? kPass
+         : report.result.verdict == Verdict::kInterrupted ? kInterrupted
+                                                          : kFail;
 }
 
 #else
@@ -172,14 +182,16 @@ void AddRun(CLI::App& app, int& exit_code) {
   run->add_option("--seed", arguments->seed, "of all randomness; default the scenario's")->check(WholeNumber);
   run->add_option("--out", arguments->out, "folder for the results; default runs/<scenario>-<seed>")->check(NotEmpty);
   run->add_option("--robot", arguments->robot,
-                  "twin (default); emulated: the twin behind the real drivers and protocols, in real time; or hardware:FILE, which names the car's devices");
+                  "twin (default); emulated: the twin behind the real drivers and protocols, in real time; or "
+                  "hardware:FILE, which names the car's devices");
   run->add_option("--pace", arguments->pace, "fast (default), real, or a factor of real time");
-  run->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
-  run
-      ->add_option("--threads", arguments->threads,
-                   "same bits for any number; default: one for the loop, and one for each camera")
+  run->add_option("--gl", arguments->gl, "how colour is drawn; off: depth only")
+      ->check(CLI::IsMember({"auto", "egl", "osmesa", "off"}));
+  run->add_option("--threads", arguments->threads,
+                  "same bits for any number; default: one for the loop, and one for each camera")
       ->check(CLI::Range(1, 256));
-  run->add_option("--set", arguments->sets, "a.b=c, over the scenario's file; may be repeated")->allow_extra_args(false);
+  run->add_option("--set", arguments->sets, "a.b=c, over the scenario's file; may be repeated")
+      ->allow_extra_args(false);
   run->add_option("--duration", arguments->duration_s, "seconds, instead of the scenario's")->check(NotEmpty);
   run->add_flag("--json", arguments->json, "print result.json instead of the summary");
   run->callback([arguments, &exit_code] { exit_code = Run(*arguments); });

@@ -33,7 +33,8 @@ class Formatter : public CLI::Formatter {
     return text.empty() ? "" : fmt::format("{}\n", fmt::join(Wrap(text, Columns()), "\n"));
   }
   std::string Wrapped(const std::string& text) const {
-    return fmt::format("{}", fmt::join(Wrap(text, std::max(20, Columns() - static_cast<int>(get_column_width()))), "\n"));
+    return fmt::format("{}",
+                       fmt::join(Wrap(text, std::max(20, Columns() - static_cast<int>(get_column_width()))), "\n"));
   }
 };
 
@@ -52,7 +53,8 @@ std::vector<std::string> OptionNames(const CLI::App& app) {
 
 std::vector<std::string> SubcommandNames(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(sub->get_name());
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(sub->get_name());
   return names;
 }
 

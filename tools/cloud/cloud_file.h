@@ -16,7 +16,7 @@ namespace merlin {
 struct CloudFile {
   Cloud cloud;                                     // sigma_m where the file has a column of that name
   std::vector<std::array<std::uint8_t, 3>> rgb{};  // red, green, blue [0, 255], where columns have them; else empty
-  std::size_t left_out = 0;  // points that are empty, not finite, beyond 1e9 m, or of a sigma_m not above 0
+  std::size_t left_out = 0;             // points that are empty, not finite, beyond 1e9 m, or of a sigma_m not above 0
   std::vector<std::string> warnings{};  // a sentence each: what else of the file was not read, or how it was
 };
 

@@ -80,7 +80,7 @@ PcdHeader ReadPcdHeader(std::string_view bytes, const std::string& name) {
 }
 
 // The words of an entry, of the given number (0: any but none).
-const std::vector<std::string>& Words(const PcdHeader& header, const std::string& key, std::size_t count,
+const std::vector<std::string>& Words(const PcdHeader& header, const char* key, std::size_t count,
                                       const std::string& name) {
   const auto entry = header.entries.find(key);
   if (entry == header.entries.end()) throw InputError(name, "the header has no line " + key);

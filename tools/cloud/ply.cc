@@ -110,7 +110,7 @@ class Rows {
   virtual std::size_t Left() const = 0;                           // bytes
   virtual std::size_t Least(const Property& property) const = 0;  // bytes it takes
   virtual void Read(const Element& element, std::vector<double>& row) = 0;
-  virtual bool CanGoOn() const = 0;     // with the next row, after one that was refused
+  virtual bool CanGoOn() const = 0;  // with the next row, after one that was refused
   virtual std::size_t Finish() = 0;  // bytes behind the data, for which the format has no use
 };
 

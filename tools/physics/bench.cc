@@ -20,8 +20,9 @@ constexpr double kBenchSpeed_m_s = 0.5, kBenchSteering_rad = 0.2;
 // To and fro in a bend, so that wheels roll, turn and brake, and nothing is hit.
 void Drive(sim::World& world) {
   const double side = world.Now() / std::chrono::milliseconds(800) % 2 == 0 ? 1.0 : -1.0;
-  world.drive().Send({.speed_m_s = side * kBenchSpeed_m_s, .steering_rad = kBenchSteering_rad, .valid_for = std::chrono::seconds(1)},
-                     world.Now());
+  world.drive().Send(
+      {.speed_m_s = side * kBenchSpeed_m_s, .steering_rad = kBenchSteering_rad, .valid_for = std::chrono::seconds(1)},
+      world.Now());
 }
 
 }  // namespace
@@ -46,10 +47,11 @@ PhysicsBench BenchPhysics(const std::atomic<bool>& interrupted) {
 }
 
 std::string Table(const PhysicsBench& bench) {
-  return fmt::format("one car in {}, steps of {:g} ms; median of {} runs of {} steps\n"
-                     "  {:.0f} steps/s, {:.0f} times real time (at least {:g})\n",
-                     kRoom, 1e3 * Seconds(sim::World::kStep), bench.runs, bench.steps, bench.steps_per_s,
-                     bench.times_real_time, bench.least_times_real_time);
+  return fmt::format(
+      "one car in {}, steps of {:g} ms; median of {} runs of {} steps\n"
+      "  {:.0f} steps/s, {:.0f} times real time (at least {:g})\n",
+      kRoom, 1e3 * Seconds(sim::World::kStep), bench.runs, bench.steps, bench.steps_per_s, bench.times_real_time,
+      bench.least_times_real_time);
 }
 
 std::string ToJson(const PhysicsBench& bench) {

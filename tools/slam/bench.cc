@@ -181,7 +181,8 @@ void BenchLap(SlamBench& bench, const std::atomic<bool>& interrupted) {
   const Scenario& scenario = options.scenario;
   options.scenario.sensors.color.reset();
   Twin twin(TwinOptionsOf(scenario, options));
-  DriveLoop loop(twin.robot(), BelievedCar(scenario.car), scenario.perception, scenario.slam, scenario.task, scenario.pilot);
+  DriveLoop loop(twin.robot(), BelievedCar(scenario.car), scenario.perception, scenario.slam, scenario.task,
+                 scenario.pilot);
   Times frames, closing;
   const auto tick = [&](Time, const Decision&) {
     frames.Add(loop.stack_ms().back());
@@ -209,8 +210,8 @@ std::string Table(const SlamBench& bench) {
   std::string text = fmt::format(
       "one thread; registration in a corridor with an end wall, {} times; {} frames of a drive in {} ({:.1f} % not "
       "registered); a lap of {}, filter to command, {} loops closed\n  {:<36} {:>7} {:>16} {:>16} {:>16}\n",
-      bench.rounds, bench.frames, kScenario, 100.0 * bench.not_converged, kLap, bench.loops, "ms (at most)", "points", "median",
-      "p99", "max");
+      bench.rounds, bench.frames, kScenario, 100.0 * bench.not_converged, kLap, bench.loops, "ms (at most)", "points",
+      "median", "p99", "max");
   for (const SlamBench::Row& row : bench.rows)
     text += fmt::format("  {:<36} {:>7} {:>9.2f} {:>6} {:>9.2f} {:>6} {:>9.2f} {:>6}\n", row.what,
                         row.points > 0 ? fmt::format("{}", row.points) : "", row.median_ms, Limit(row.median_limit_ms),

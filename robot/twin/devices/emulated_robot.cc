@@ -15,11 +15,11 @@ constexpr Duration kCaughtUp = std::chrono::milliseconds(20);  // with what sett
 
 EmulatedCar CarOf(Twin& twin) {
   EmulatedCar car{.send = [&twin](const DriveCommand& command) { twin.robot().drive->Send(command); },
-          .read =
-              [&twin] {
-                const sim::World& world = std::as_const(twin).world();
-                return world.drive().Read(world.model(), world.data(), world.Now());
-              }};
+                  .read =
+                      [&twin] {
+                        const sim::World& world = std::as_const(twin).world();
+                        return world.drive().Read(world.model(), world.data(), world.Now());
+                      }};
   if (twin.robot().pan == nullptr) return car;
   car.pan = [&twin](double angle_rad) { twin.robot().pan->Send(angle_rad); };
   car.pan_angle_rad = [&twin] {

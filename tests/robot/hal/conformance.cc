@@ -52,7 +52,8 @@ void ExpectAscendingStampsAtRate(const std::vector<Measurement>& measurements, d
   ASSERT_GE(measurements.size(), 2u);
   for (std::size_t i = 1; i < measurements.size(); ++i) EXPECT_GT(measurements[i].stamp, measurements[i - 1].stamp);
   EXPECT_NEAR(static_cast<double>(measurements.size()), rate_hz * seconds, 0.1 * rate_hz * seconds + 2.0);
-  const double mean_period_s = Seconds(measurements.back().stamp - measurements.front().stamp) / static_cast<double>(measurements.size() - 1);
+  const double mean_period_s =
+      Seconds(measurements.back().stamp - measurements.front().stamp) / static_cast<double>(measurements.size() - 1);
   EXPECT_NEAR(mean_period_s * rate_hz, 1.0, 0.02);
 }
 
@@ -91,7 +92,8 @@ TEST_P(HalConformance, StampsTheMiddleOfTheExposureNotTheArrival) {
   const double latency_s = session.robot.depth->Info().sheet.latency_s;
   for (std::size_t i = 0; i < session.depth.size(); ++i) {
     EXPECT_GE(Seconds(session.depth_seen[i] - session.depth[i].stamp), latency_s - 1e-9);
-    EXPECT_LE(Seconds(session.depth_seen[i] - session.depth[i].stamp), latency_s + Seconds(kTick + session.rig->slack()) + 0.005);
+    EXPECT_LE(Seconds(session.depth_seen[i] - session.depth[i].stamp),
+              latency_s + Seconds(kTick + session.rig->slack()) + 0.005);
   }
 }
 
@@ -131,7 +133,8 @@ TEST_P(HalConformance, RefusesColourSettingsOutsideTheSheet) {
   EXPECT_THROW(session.robot.color->Configure({.exposure_s = 2.0 * sheet.exposure_max_s}), InputError);
   EXPECT_THROW(session.robot.color->Configure({.exposure_s = std::nan("")}), InputError);
   EXPECT_THROW(session.robot.color->Configure({.exposure_s = sheet.exposure_min_s, .gain = 0.5}), InputError);
-  EXPECT_THROW(session.robot.color->Configure({.exposure_s = sheet.exposure_min_s, .white_balance_red = 0.0}), InputError);
+  EXPECT_THROW(session.robot.color->Configure({.exposure_s = sheet.exposure_min_s, .white_balance_red = 0.0}),
+               InputError);
 }
 
 TEST_P(HalConformance, UsesNewColourSettingsAndReportsThem) {
@@ -353,7 +356,8 @@ TEST_P(HalConformance, PansAtItsSpeedToItsLimit) {
   for (const PanState& state : session.pan) {
     const double since_s = std::max(0.0, Seconds(state.stamp - sent));
     EXPECT_LE(state.angle_rad, pan.slew_rad_s * since_s + 0.05);
-    EXPECT_GE(state.angle_rad, std::min(limit_rad, pan.slew_rad_s * (since_s - 0.1 - Seconds(session.rig->slack()))) - 0.05);
+    EXPECT_GE(state.angle_rad,
+              std::min(limit_rad, pan.slew_rad_s * (since_s - 0.1 - Seconds(session.rig->slack()))) - 0.05);
   }
   EXPECT_NEAR(session.pan.back().angle_rad, limit_rad, 0.02);
 }
@@ -368,7 +372,8 @@ TEST_P(HalConformance, HoldsItsPanAngleWhenNothingMoreIsSentAndIgnoresWhatIsNoNu
   session.Drive(2.0, std::nullopt);
   EXPECT_TRUE(session.drive.back().expired);
   for (const PanState& state : session.pan)
-    EXPECT_TRUE(session.pan.back().stamp - state.stamp >= std::chrono::seconds(2) || std::abs(state.angle_rad + 0.8) < 0.02);
+    EXPECT_TRUE(session.pan.back().stamp - state.stamp >= std::chrono::seconds(2) ||
+                std::abs(state.angle_rad + 0.8) < 0.02);
   for (std::size_t i = 1; i < session.pan.size(); ++i) EXPECT_GT(session.pan[i].stamp, session.pan[i - 1].stamp);
   EXPECT_EQ(session.robot.pan->Status().health, DeviceStatus::Health::kOk);
 }

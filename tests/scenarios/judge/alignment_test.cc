@@ -89,7 +89,8 @@ TEST(Ate, ScalesWhereAsked) {
   EXPECT_NEAR(ate.scale, 1.25, 1e-12);
   EXPECT_NEAR(ate.rmse_m, 0.0, 1e-12);
   EXPECT_EQ(AlignAndAte(pairs)->scale, 1.0);
-  EXPECT_FALSE(AlignAndAte(std::vector<PosePair>{{At(0, 0, 0), At(1, 1, 1)}, {At(1, 0, 0), At(1, 1, 1)}}, Alignment::kSim3));
+  EXPECT_FALSE(
+      AlignAndAte(std::vector<PosePair>{{At(0, 0, 0), At(1, 1, 1)}, {At(1, 0, 0), At(1, 1, 1)}}, Alignment::kSim3));
 }
 
 TEST(Ate, LeavesTheEstimateWhereItIsWhereAsked) {

@@ -49,13 +49,13 @@ TEST(CountLaps, WantsTheStartingLineCrossedAgain) {
 }
 
 TEST(CountLaps, CountsAroundTheCentreOnly) {
-  EXPECT_EQ(CountLaps(Along({kStart, kB, {9, 1}, {-9, 1}, kA, kStart}), kOutline), 1);    // half the room, and the centre
+  EXPECT_EQ(CountLaps(Along({kStart, kB, {9, 1}, {-9, 1}, kA, kStart}), kOutline), 1);  // half the room, and the centre
   EXPECT_EQ(CountLaps(Along({kStart, kB, {9, -1}, {-9, -1}, kA, kStart}), kOutline), 0);  // half the room without it
 }
 
 // Rectangle of these half sizes, from its lower middle, counter-clockwise.
 std::vector<Eigen::Vector2d> HalfRectangle(double half_x_m, double half_y_m) {
-  return {{0, -half_y_m},        {half_x_m, -half_y_m}, {half_x_m, half_y_m},
+  return {{0, -half_y_m},        {half_x_m, -half_y_m},  {half_x_m, half_y_m},
           {-half_x_m, half_y_m}, {-half_x_m, -half_y_m}, {0, -half_y_m}};
 }
 
@@ -133,10 +133,12 @@ TEST(CountLaps, StartsAnewWhereThePathRunsOverTheCentre) {
 }
 
 TEST(CountLaps, AsksTheCentreOfTheAreaWhereverTheRoomLies) {
-  // A trapezium far from the origin, its corners clockwise and one of them twice: the mean of its corners lies beside it.
+  // A trapezium far from the origin, its corners clockwise and one of them twice: the mean of its corners lies beside
+  // it.
   const Outline room{{1000, 500}, {1000, 500}, {1000, 510}, {1004, 510}, {1030, 500}};
   // Its centre by hand: a square part of 4 x 10 m and a triangle of 26 x 10 m.
-  const Eigen::Vector2d centre((40 * 1002.0 + 130 * (1004 + 26 / 3.0)) / 170, (40 * 505.0 + 130 * (500 + 10 / 3.0)) / 170);
+  const Eigen::Vector2d centre((40 * 1002.0 + 130 * (1004 + 26 / 3.0)) / 170,
+                               (40 * 505.0 + 130 * (500 + 10 / 3.0)) / 170);
   const auto around = [](const Eigen::Vector2d& c, double size_m) {
     std::vector<Eigen::Vector2d> points;
     for (const auto& [x, y] : {std::pair(0, -1), {1, -1}, {1, 1}, {-1, 1}, {-1, -1}, {0, -1}})

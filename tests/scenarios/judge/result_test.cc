@@ -120,15 +120,19 @@ std::string ParsedClassName(const std::string& xml) {
 }
 
 TEST(ToJUnit, KeepsEveryCharacterThatXmlMayHold) {
-  for (const std::string name : {"Prüfung Flur <Ä>", "走廊", "\U0001F697 \"x\" & y's", "\xC2\x85", "a\tb\nc\rd", "\U0010FFFD"})
+  for (const std::string name :
+       {"Prüfung Flur <Ä>", "走廊", "\U0001F697 \"x\" & y's", "\xC2\x85", "a\tb\nc\rd", "\U0010FFFD"})
     EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = name})), name);
 }
 
 TEST(ToJUnit, StaysWellFormedWhateverTheText) {
-  EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "a\xff" "b"})), "a\uFFFD" "b");
+  EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "a\xff"
+                                                 "b"})),
+            "a\uFFFD"
+            "b");
   EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "\xC3"})), "\uFFFD");
   EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = std::string("\0\x01\x1F", 3)})), "???");
-  EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "\xEF\xBF\xBE\xEF\xBF\xBF"})), "??");     // U+FFFE, U+FFFF
+  EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "\xEF\xBF\xBE\xEF\xBF\xBF"})), "??");      // U+FFFE, U+FFFF
   EXPECT_EQ(ParsedClassName(ToJUnit({.scenario = "\xED\xA0\x80"})), "\uFFFD\uFFFD\uFFFD");  // a surrogate
   const std::string fault = ToJUnit({.scenario = "s", .fault = "käse\xff: \"lost\""});
   EXPECT_NE(fault.find("<error message=\"käse\uFFFD: &quot;lost&quot;\"/>"), std::string::npos) << fault;

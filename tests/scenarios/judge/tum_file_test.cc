@@ -53,7 +53,7 @@ TEST(TumFile, RefusesWithTheLine) {
   ExpectTumRefused("", "t.tum: no poses");
   ExpectTumRefused("# nothing\n\n", "t.tum: no poses");
   ExpectTumRefused(kTwo + "1.9 4 5 6 0 0 0 1\n",
-                "t.tum:4: the stamp comes before the one above it; expected 2.000000001 s");
+                   "t.tum:4: the stamp comes before the one above it; expected 2.000000001 s");
   ExpectTumRefused(kTwo + "3 4 5 6 0 0 0\n", "t.tum:4: the line ends before the quaternion");
   ExpectTumRefused(kTwo + "3 4 5 6 0 0 0 1 9\n", "t.tum:4: more fields");
   ExpectTumRefused(kTwo + "3,4,5,6,0,0,0,1\n", "t.tum:4: the stamp; expected a number");
@@ -66,10 +66,10 @@ TEST(TumFile, RefusesWithTheLine) {
 
 TEST(TumFile, NamesEveryFaultAtOnce) {
   ExpectTumRefused(kTwo + "3 4 5\n1 4 5 6 0 0 0 1\nx\n4 4 5 6 0 0 0 1 1\n",
-                "t.tum:4: the line ends before the position\n"
-                "t.tum:5: the stamp comes before the one above it; expected "
-                "2.000000001 s or more, got 1.000000000 s\nt.tum:6: the stamp; expected a number between -9e+09 and "
-                "9e+09, got 'x'\nt.tum:7: more fields than");
+                   "t.tum:4: the line ends before the position\n"
+                   "t.tum:5: the stamp comes before the one above it; expected "
+                   "2.000000001 s or more, got 1.000000000 s\nt.tum:6: the stamp; expected a number between -9e+09 and "
+                   "9e+09, got 'x'\nt.tum:7: more fields than");
 }
 
 TEST(TumFile, IgnoresAByteOrderMark) {

@@ -21,7 +21,8 @@ PhaseReading ReadingOf(const Chip& chip, const Light& light, const PixelTraits& 
 
 TEST(TofChip, TakesTheTapsOfTheFourPhaseAlgorithm) {
   // Phase 45 degrees: m = C N sqrt(1/2) (1, -1, -1, 1).
-  const FourTaps taps = ExposeFour(Chip(Pmd3k(), {}, kIdealTof), {.signal_e = 1000.0, .phase_rad = std::numbers::pi / 4.0});
+  const FourTaps taps =
+      ExposeFour(Chip(Pmd3k(), {}, kIdealTof), {.signal_e = 1000.0, .phase_rad = std::numbers::pi / 4.0});
   const double m_e = 450.0 * std::sqrt(0.5);
   const double sign[4] = {1, -1, -1, 1};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -52,7 +53,8 @@ TEST(TofPhase, IsFoundInEveryQuadrantAndOnTheAxes) {
   for (int step = 0; step < 64; ++step) {
     const double phase_rad = 2.0 * std::numbers::pi * step / 64.0;
     Taps taps[4];
-    for (int k = 0; k < 4; ++k) taps[k] = {.a_e = 500.0 + 7.0 * std::cos(phase_rad + k * std::numbers::pi / 2.0), .b_e = 490.0};
+    for (int k = 0; k < 4; ++k)
+      taps[k] = {.a_e = 500.0 + 7.0 * std::cos(phase_rad + k * std::numbers::pi / 2.0), .b_e = 490.0};
     EXPECT_NEAR(PhaseError_rad(DecodePhase(taps).phase_rad, phase_rad), 0.0, 1e-12) << step;
     EXPECT_NEAR(DecodePhase(taps).amplitude_e, 7.0, 1e-11);
   }
@@ -205,8 +207,8 @@ TEST(TofResponse, MakesAnErrorOfFourfoldPhaseThatGrowsWithAmplitude) {
       FourTaps bent = ExposeFour(Chip(Pmd3k(), {}, kIdealTof), light);
       for (Taps& taps : bent)
         for (double* tap : {&taps.a_e, &taps.b_e}) *tap -= 0.03 * *tap * *tap / 1.5e6;
-      quadratic_rad = std::max(quadratic_rad,
-                               std::abs(PhaseError_rad(DecodePhase(bent.data()).phase_rad, light.phase_rad)));
+      quadratic_rad =
+          std::max(quadratic_rad, std::abs(PhaseError_rad(DecodePhase(bent.data()).phase_rad, light.phase_rad)));
     }
     EXPECT_GT(peak_rad, last_peak_rad);
     EXPECT_LT(quadratic_rad, 1e-12);
@@ -237,11 +239,13 @@ TEST(TofChip, HasAHotPixelAlwaysFullWhetherOrNotItSuppressesBackground) {
 }
 
 TEST(TofChip, CancelsGainAndOffsetOfTheTapsForAPixelAtRest) {
-  // A (1 + g) - B (1 - g) = D + g N: the same in all four, gone from D_0 - D_2 and D_3 - D_1; so is the offset, at once.
+  // A (1 + g) - B (1 - g) = D + g N: the same in all four, gone from D_0 - D_2 and D_3 - D_1; so is the offset, at
+  // once.
   const Chip chip(Pmd3k(), {}, kIdealTof);
   for (const double phase_rad : {0.0, 0.7, 3.0, 6.2}) {
     const Light light{.signal_e = 2e5, .phase_rad = phase_rad, .background_e = 3e5};
-    const PhaseReading plain = ReadingOf(chip, light), odd = ReadingOf(chip, light, {.gain = 0.02f, .offset_e = -300.0f});
+    const PhaseReading plain = ReadingOf(chip, light),
+                       odd = ReadingOf(chip, light, {.gain = 0.02f, .offset_e = -300.0f});
     EXPECT_NEAR(PhaseError_rad(odd.phase_rad, plain.phase_rad), 0.0, 1e-12);
     EXPECT_NEAR(odd.amplitude_e / plain.amplitude_e, 1.0, 1e-12);
     const FourTaps taps = ExposeFour(chip, light, 0, {.gain = 0.02f, .offset_e = -300.0f});
@@ -321,7 +325,8 @@ TEST(TofConsistency, BreaksForSubFramesOfTwoDepths) {
 
 TEST(TofConsistency, NeedsBothAShareOfTheModulationAndFourSigmas) {
   const auto inconsistent = [](double d0_e, double d2_e, double common_e) {
-    const Taps taps[4] = {{common_e + d0_e, common_e}, {common_e, common_e}, {common_e + d2_e, common_e}, {common_e, common_e}};
+    const Taps taps[4] = {
+        {common_e + d0_e, common_e}, {common_e, common_e}, {common_e + d2_e, common_e}, {common_e, common_e}};
     return Inconsistent(taps, DecodePhase(taps).amplitude_e, 0.0);
   };
   EXPECT_FALSE(inconsistent(0.0, 0.0, 0.0));

@@ -1,4 +1,6 @@
 // The camera in our own rooms, against rays traced one by one, brute force and what the experiments showed.
+#include "sim/room.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 #include <map>
 
 #include "robot/description/description.h"
-#include "sim/room.h"
 #include "tests/sim/tof/stage.h"
 
 namespace merlin::sim {
@@ -53,7 +54,8 @@ TEST(TofCamera, SumsWhatEverySubRayMeetsAtItsOwnInstant) {
             // Sub-frames of 1 ms, 1 ms apart, about mid-exposure; three instants in each.
             const double t_s = (k - 1.5) * 2e-3 + ((i + j) % 3 - 1) * 1e-3 / 3.0;
             const Pose T_world_camera = view.camera.At(t_s);
-            const Eigen::Vector3d direction = T_world_camera.linear() * sheet.camera.Ray(u + (i - 1) / 3.0, v + (j - 1) / 3.0);
+            const Eigen::Vector3d direction =
+                T_world_camera.linear() * sheet.camera.Ray(u + (i - 1) / 3.0, v + (j - 1) / 3.0);
             const Ray ray{T_world_camera.translation().cast<float>(), direction.cast<float>()};
             RayHit hit;
             room.scene.Cast(std::span(&ray, 1), std::span(&hit, 1));
@@ -84,7 +86,8 @@ TEST(TofTruth, IsWhatTheIdealCameraReadsAndWhereItIs) {
   ASSERT_EQ(truth.range_m.size(), 64u * 48u);
   ASSERT_EQ(truth.T_world_camera.size(), 4u);
   for (int k = 0; k < 4; ++k)
-    EXPECT_NEAR(truth.T_world_camera[static_cast<std::size_t>(k)].translation().x(), -3.0 + 0.5 * (k - 1.5) * 2e-3, 1e-12);
+    EXPECT_NEAR(truth.T_world_camera[static_cast<std::size_t>(k)].translation().x(), -3.0 + 0.5 * (k - 1.5) * 2e-3,
+                1e-12);
   int mixed = 0;
   for (int v = 0; v < 48; ++v) {
     for (int u = 0; u < 64; ++u) {
@@ -110,7 +113,8 @@ TEST(TofTruth, IsWhatTheIdealCameraReadsAndWhereItIs) {
   EXPECT_LT(mixed, 64 * 48 / 2);
   std::map<std::string, double> largest_m;
   for (const TofTruth::Bias& bias : truth.bias)
-    for (const float range_m : bias.range_m) largest_m[bias.effect] = std::max<double>(largest_m[bias.effect], std::abs(range_m));
+    for (const float range_m : bias.range_m)
+      largest_m[bias.effect] = std::max<double>(largest_m[bias.effect], std::abs(range_m));
   EXPECT_GT(largest_m.at("wiggling"), 0.003);
   EXPECT_LT(largest_m.at("wiggling"), 0.008);  // what the calibration leaves
   EXPECT_GT(largest_m.at("flying"), 0.05);
@@ -129,7 +133,8 @@ TEST(TofTruth, PredictsTheSpreadOfRepeatedFrames) {
   for (std::size_t p = 5; p < frames[0].size(); p += 61) {
     if (frames[0].flags[p] & (kSaturated | kLowSignal)) continue;
     double sum = 0.0, squares = 0.0;
-    for (const DepthFrame& frame : frames) sum += frame.range_m[p], squares += static_cast<double>(frame.range_m[p]) * frame.range_m[p];
+    for (const DepthFrame& frame : frames)
+      sum += frame.range_m[p], squares += static_cast<double>(frame.range_m[p]) * frame.range_m[p];
     const double sigma_m = std::sqrt((squares - sum * sum / kFrames) / (kFrames - 1));
     EXPECT_NEAR(sigma_m / truth.sigma_m[p], 1.0, 0.2) << p;  // 400 samples: one sigma is 3.5 %
     ratio_sum += sigma_m / truth.sigma_m[p];
@@ -139,8 +144,8 @@ TEST(TofTruth, PredictsTheSpreadOfRepeatedFrames) {
   EXPECT_NEAR(ratio_sum / pixels, 1.0, 0.03);
 }
 
-// 95th percentile of |range - truth| (wrapped the shortest way) over the pixels that a user would use, for the cameras that
-// look towards these yaws from the room's middle.
+// 95th percentile of |range - truth| (wrapped the shortest way) over the pixels that a user would use, for the cameras
+// that look towards these yaws from the room's middle.
 double ErrorP95_m(RoomView& room, const std::vector<double>& yaws_deg) {
   const DepthCameraSheet sheet = ReadDepthCameraSheet(kModels / "cameras/pmd_3k_s.yaml");
   const DepthCameraErrors errors = ReadDepthCameraErrors(kModels / "cameras/pmd_3k_s.yaml");
@@ -167,7 +172,8 @@ TEST(TofSunlight, DistortsTheWindowSideUntilTheCurtainIsClosed) {
   const double closed_windows_m = ErrorP95_m(closed, windows), closed_others_m = ErrorP95_m(closed, others);
   EXPECT_LE(closed_windows_m, 1.3 * closed_others_m);
   RecordProperty("open_windows_m", std::to_string(open_windows_m));
-  std::printf("p95: open %.3f and %.3f m, curtain %.3f and %.3f m\n", open_windows_m, open_others_m, closed_windows_m, closed_others_m);
+  std::printf("p95: open %.3f and %.3f m, curtain %.3f and %.3f m\n", open_windows_m, open_others_m, closed_windows_m,
+              closed_others_m);
 }
 
 }  // namespace

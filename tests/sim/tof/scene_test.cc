@@ -76,15 +76,16 @@ TEST(TofMotion, ErrsAxiallyByHalfTheWayOfASubFrameTimesCos2Phi) {
     for (const double sign : {1.0, -1.0}) {
       Stage stage({Wall(x_m)});
       stage.camera.velocity_m_s = {-sign * kSpeed_m_s, 0, 0};  // 1: the range grows
-      const double error_m = std::remainder(stage.Expose("motion", settings, {}, sheet).range_m[0] - x_m, kUnambiguous_m);
+      const double error_m =
+          std::remainder(stage.Expose("motion", settings, {}, sheet).range_m[0] - x_m, kUnambiguous_m);
       const double law_m = sign * 0.5 * step_m * std::cos(2.0 * WaveNumber(20e6) * x_m);
       EXPECT_NEAR(error_m, law_m, 0.1 * 0.5 * step_m) << x_m;
     }
   }
 }
 
-// Near by, the light of the four sub-frames differs, too: the four taps written out, with N ~ 1 / d^2 and the mean over the
-// integration.
+// Near by, the light of the four sub-frames differs, too: the four taps written out, with N ~ 1 / d^2 and the mean over
+// the integration.
 TEST(TofMotion, AddsTheChangeOfLightNearBy) {
   const DepthSettings settings{.integration_s = 4e-3};
   DepthCameraSheet sheet = Sheet3kS();
@@ -100,7 +101,9 @@ TEST(TofMotion, AddsTheChangeOfLightNearBy) {
     double range_m = std::atan2(D[3] - D[1], D[0] - D[2]) / WaveNumber(20e6);
     Stage stage({Wall(x_m)});
     stage.camera.velocity_m_s = {-1.5, 0, 0};
-    EXPECT_NEAR(std::remainder(stage.Expose("motion", settings, {}, sheet).range_m[0] - range_m, kUnambiguous_m), 0.0, 2e-4) << x_m;
+    EXPECT_NEAR(std::remainder(stage.Expose("motion", settings, {}, sheet).range_m[0] - range_m, kUnambiguous_m), 0.0,
+                2e-4)
+        << x_m;
   }
 }
 
@@ -141,7 +144,8 @@ TEST(TofFlyingPixels, MixTwoSurfacesAsTheirPhasorsDo) {
     const double x = 0.5 / sheet.camera.fx_px, y = 0.5 / sheet.camera.fy_px, n = std::sqrt(1 + x * x + y * y);
     for (std::size_t i = 0; i < ranges.size(); ++i) {
       const double far_m = kNear_m + apart_m, a = shares[i];
-      const double mixed_m = RangeOfWays({{a / (kNear_m * kNear_m), kNear_m * n}, {(1 - a) / (far_m * far_m), far_m * n}}, 0.0);
+      const double mixed_m =
+          RangeOfWays({{a / (kNear_m * kNear_m), kNear_m * n}, {(1 - a) / (far_m * far_m), far_m * n}}, 0.0);
       EXPECT_NEAR(std::remainder(ranges[i] - mixed_m, kUnambiguous_m), 0.0, 2e-3) << apart_m << " m, share " << a;
     }
     if (apart_m < kUnambiguous_m / 2.0) {  // between the two, and never back
@@ -167,7 +171,8 @@ TEST(TofFlyingPixels, DimMostWhereTheSurfacesAreHalfTheRangeApart) {
   for (const double apart_m : {0.5, 2.0, kUnambiguous_m / 2.0, 6.0}) {
     // Albedos that make both sides equally bright; the edge through the middle of pixel 32 leaves one column on it.
     const double far_m = 1.0 + apart_m, pixel_m = 1.0 / Sheet3kS().camera.fx_px;
-    const Stage stage({Wall(far_m, 0.01 * far_m * far_m), {{1.00001, -0.5 * pixel_m + 1e-4 - 5.0, 0}, {2e-5, 10.0, 10.0}, {.nir_albedo = 0.01}}});
+    const Stage stage({Wall(far_m, 0.01 * far_m * far_m),
+                       {{1.00001, -0.5 * pixel_m + 1e-4 - 5.0, 0}, {2e-5, 10.0, 10.0}, {.nir_albedo = 0.01}}});
     amplitudes.push_back(stage.Expose("flying").amplitude[Pixel(32, 24)]);
   }
   EXPECT_EQ(std::ranges::min_element(amplitudes) - amplitudes.begin(), 2);
@@ -211,7 +216,8 @@ TEST(TofIntegration, ShowsTheBookOrTheChair) {
 }
 
 TEST(TofCamera, TakesTheSameFrameWithAnyNumberOfThreads) {
-  Stage stage({Wall(4.0), {{2.0, 0.5, 0}, {0.5, 0.5, 0.5}}, {{3.0, -1.0, 0}, {0.01, 1.0, 1.0}, {.glass_transmission = 0.9}}});
+  Stage stage(
+      {Wall(4.0), {{2.0, 0.5, 0}, {0.5, 0.5, 0.5}}, {{3.0, -1.0, 0}, {0.01, 1.0, 1.0}, {.glass_transmission = 0.9}}});
   stage.camera.velocity_m_s = {0.5, 0.1, 0};
   stage.camera.angular_velocity_rad_s = {0, 0, 0.3};
   stage.around.sun = Sun{.to_sun = Eigen::Vector3d(-1, 1, 1).normalized()};

@@ -15,7 +15,9 @@ Stage Corner(double corner_m, double albedo) {
   const auto wall = [&](double side) -> StageBox {
     // Along (-1, side) from the corner, one metre thick to the outside.
     const Eigen::Vector3d along(-s, side * s, 0), out(s, side * s, 0);
-    return {Eigen::Vector3d(corner_m, 0, 0) + 15.0 * along + 0.5 * out, {30.0 + 2.0, 1.0, 30.0}, {.nir_albedo = albedo},
+    return {Eigen::Vector3d(corner_m, 0, 0) + 15.0 * along + 0.5 * out,
+            {30.0 + 2.0, 1.0, 30.0},
+            {.nir_albedo = albedo},
             side > 0 ? 135.0 : -135.0};
   };
   return Stage({wall(1.0), wall(-1.0)});
@@ -51,7 +53,8 @@ double BruteForceRange_m(double corner_m, double albedo, int u, int v) {
       const Eigen::Vector3d way = p.point - q.point;
       const double r = way.norm();
       const double cos_q = q.normal.dot(way) / r, cos_p = -p.normal.dot(way) / r;
-      ways.push_back({albedo * albedo / kPi * solid_angle * cos_q * cos_p / (r * r), (q.range_m + r + p.range_m) / 2.0});
+      ways.push_back(
+          {albedo * albedo / kPi * solid_angle * cos_q * cos_p / (r * r), (q.range_m + r + p.range_m) / 2.0});
     }
   }
   return RangeOfWays(ways, p.range_m);
@@ -89,7 +92,8 @@ TEST(TofMultipath, BulgesACornerAsABruteForceIntegralDoes) {
     const Stage dark = Corner(corner_m, 0.1);
     const DepthFrame dark_bounced = dark.Expose("multipath"), dark_straight = dark.Expose("ideal");
     std::vector<double> dark_m;
-    for (int u = 0; u < 64; ++u) dark_m.push_back(dark_bounced.range_m[Pixel(u, 24)] - dark_straight.range_m[Pixel(u, 24)]);
+    for (int u = 0; u < 64; ++u)
+      dark_m.push_back(dark_bounced.range_m[Pixel(u, 24)] - dark_straight.range_m[Pixel(u, 24)]);
     EXPECT_LT(Bulge_m(dark_m), 0.2 * Bulge_m(ours_m)) << corner_m << " m";
   }
 }
@@ -105,19 +109,24 @@ TEST(TofMultipath, KeepsToWhatTheLampReaches) {
   std::vector<StageBox> boxes;
   const double s = std::sqrt(0.5);
   for (const double side : {1.0, -1.0})
-    boxes.push_back({Eigen::Vector3d(2.0, 0, 0) + 15.0 * Eigen::Vector3d(-s, side * s, 0) + 0.5 * Eigen::Vector3d(s, side * s, 0),
-                     {32.0, 1.0, 30.0}, {.nir_albedo = 0.7}, side > 0 ? 135.0 : -135.0});
+    boxes.push_back(
+        {Eigen::Vector3d(2.0, 0, 0) + 15.0 * Eigen::Vector3d(-s, side * s, 0) + 0.5 * Eigen::Vector3d(s, side * s, 0),
+         {32.0, 1.0, 30.0},
+         {.nir_albedo = 0.7},
+         side > 0 ? 135.0 : -135.0});
   boxes.push_back({{1.3, 0, 0}, {1.3, 0.002, 30.0}, {.nir_albedo = 0.0}});
   const Stage parted(boxes);
   const DepthFrame bounced = parted.Expose("multipath"), straight = parted.Expose("ideal");
-  for (const int u : {10, 16, 48, 54}) EXPECT_NEAR(bounced.range_m[Pixel(u, 24)], straight.range_m[Pixel(u, 24)], 1e-3) << u;
+  for (const int u : {10, 16, 48, 54})
+    EXPECT_NEAR(bounced.range_m[Pixel(u, 24)], straight.range_m[Pixel(u, 24)], 1e-3) << u;
 }
 
 // The even part of the scatter: 0.006 of the mean phasor, all by hand from the ideal frame's ranges and amplitudes.
 TEST(TofScatter, PullsDarkWallsTowardsABrightPlateAsTheMeanPhasorDoes) {
   const DepthCameraErrors errors{.scatter_share = 0.006, .scatter_flat = 1.0};
-  const struct { double wall_m, albedo, plate_share, about_m; } cases[] = {
-      {2.0, 0.5, 0.1, -0.020}, {3.0, 0.1, 0.1, -0.220}, {3.0, 0.1, 0.5, -1.2}};
+  const struct {
+    double wall_m, albedo, plate_share, about_m;
+  } cases[] = {{2.0, 0.5, 0.1, -0.020}, {3.0, 0.1, 0.1, -0.220}, {3.0, 0.1, 0.5, -1.2}};
   for (const auto& [wall_m, albedo, plate_share, about_m] : cases) {
     // The plate covers the left of the picture.
     const double tan_x = std::tan(20.0 * kPi / 180.0), edge_y_m = 0.5 * tan_x * (1.0 - 2.0 * plate_share);
@@ -130,10 +139,11 @@ TEST(TofScatter, PullsDarkWallsTowardsABrightPlateAsTheMeanPhasorDoes) {
     }
     const double mean_m = std::atan2(im, re) / WaveNumber(20e6);
     const std::size_t pixel = Pixel(48, 24);
-    const double by_hand_m =
-        RangeOfWays({{0.994 * plain.amplitude[pixel], plain.range_m[pixel]}, {0.006 * std::hypot(re, im), mean_m}}, wall_m);
+    const double by_hand_m = RangeOfWays(
+        {{0.994 * plain.amplitude[pixel], plain.range_m[pixel]}, {0.006 * std::hypot(re, im), mean_m}}, wall_m);
     EXPECT_NEAR(scattered.range_m[pixel], by_hand_m, 1e-3) << wall_m << " m, " << albedo;
-    EXPECT_NEAR((by_hand_m - plain.range_m[pixel]) / about_m, 1.0, 0.25) << wall_m << " m, " << albedo << ", " << plate_share;
+    EXPECT_NEAR((by_hand_m - plain.range_m[pixel]) / about_m, 1.0, 0.25)
+        << wall_m << " m, " << albedo << ", " << plate_share;
   }
 }
 
@@ -141,8 +151,10 @@ TEST(TofScatter, PullsDarkWallsTowardsABrightPlateAsTheMeanPhasorDoes) {
 double Slab(double angle_rad) {
   const double inside_rad = std::asin(std::sin(angle_rad) / 1.52);
   const double normal = std::pow(0.52 / 2.52, 2);
-  const double s = angle_rad == 0.0 ? normal : std::pow(std::sin(angle_rad - inside_rad) / std::sin(angle_rad + inside_rad), 2);
-  const double p = angle_rad == 0.0 ? normal : std::pow(std::tan(angle_rad - inside_rad) / std::tan(angle_rad + inside_rad), 2);
+  const double s =
+      angle_rad == 0.0 ? normal : std::pow(std::sin(angle_rad - inside_rad) / std::sin(angle_rad + inside_rad), 2);
+  const double p =
+      angle_rad == 0.0 ? normal : std::pow(std::tan(angle_rad - inside_rad) / std::tan(angle_rad + inside_rad), 2);
   return 0.5 * (2 * s / (1 + s) + 2 * p / (1 + p));
 }
 
@@ -166,20 +178,24 @@ TEST(TofGlass, MixesThePaneWithWhatIsBehindIt) {
   constexpr double kDirt = 0.02, kWallAlbedo = 0.5;
   for (const double angle_deg : {20.0, 45.0, 70.0}) {
     for (const double wall_m : {2.0, 4.0, 6.5}) {
-      const Stage stage({Wall(wall_m, kWallAlbedo),
-                         {{1.0, 0, 0}, {0.0002, 20.0, 2.0}, {.nir_albedo = kDirt, .glass_transmission = 0.89}, angle_deg}});
+      const Stage stage(
+          {Wall(wall_m, kWallAlbedo),
+           {{1.0, 0, 0}, {0.0002, 20.0, 2.0}, {.nir_albedo = kDirt, .glass_transmission = 0.89}, angle_deg}});
       const double angle_rad = angle_deg * kPi / 180.0, slab = Slab(angle_rad);
       const double passed = (1 - slab) * std::pow(0.89, 1 / std::sqrt(1 - std::pow(std::sin(angle_rad) / 1.52, 2)));
-      std::vector<Way> ways{{kDirt * std::cos(angle_rad), 1.0}, {passed * passed * kWallAlbedo / (wall_m * wall_m), wall_m}};
+      std::vector<Way> ways{{kDirt * std::cos(angle_rad), 1.0},
+                            {passed * passed * kWallAlbedo / (wall_m * wall_m), wall_m}};
       if (angle_deg > 45.0) {  // mirrored onwards, to the wall, at this angle to its normal
         const double off_rad = kPi - 2 * angle_rad, way_m = 1.0 + (wall_m - 1.0) / std::cos(off_rad);
         ways.push_back({slab * slab * kWallAlbedo * std::cos(off_rad) / (way_m * way_m), way_m});
       }
       const DepthFrame frame = stage.Expose("glass", {}, {}, sheet);
-      EXPECT_NEAR(frame.range_m[0], RangeOfWays(ways, frame.range_m[0]), 2e-3) << angle_deg << " deg, " << wall_m << " m";
+      EXPECT_NEAR(frame.range_m[0], RangeOfWays(ways, frame.range_m[0]), 2e-3)
+          << angle_deg << " deg, " << wall_m << " m";
       double amplitude_e = 0.0, re = 0.0, im = 0.0;
       for (const Way& way : ways)
-        re += way.electrons * std::cos(WaveNumber(20e6) * way.range_m), im += way.electrons * std::sin(WaveNumber(20e6) * way.range_m);
+        re += way.electrons * std::cos(WaveNumber(20e6) * way.range_m),
+            im += way.electrons * std::sin(WaveNumber(20e6) * way.range_m);
       amplitude_e = 0.45 * 2e6 * std::hypot(re, im);
       EXPECT_NEAR(frame.amplitude[0] / amplitude_e, 1.0, 0.01) << angle_deg << " deg, " << wall_m << " m";
     }
@@ -188,7 +204,8 @@ TEST(TofGlass, MixesThePaneWithWhatIsBehindIt) {
 
 TEST(TofGlass, BlindsTheCameraOnlyNearNormalIncidence) {
   const auto saturated = [](double angle_deg) {
-    const Stage stage({Wall(6.0), {{1.5, 0, 0}, {0.006, 20.0, 20.0}, {.nir_albedo = 0.02, .glass_transmission = 0.89}, angle_deg}});
+    const Stage stage(
+        {Wall(6.0), {{1.5, 0, 0}, {0.006, 20.0, 20.0}, {.nir_albedo = 0.02, .glass_transmission = 0.89}, angle_deg}});
     const DepthFrame frame = stage.Expose("glass,saturation");
     return (frame.flags[Pixel(31, 23)] & kSaturated) != 0;
   };
@@ -206,7 +223,8 @@ TEST(TofSpecular, SeesBehindAMirror) {
   const DepthFrame frame = stage.Expose("specular", {}, {}, sheet);
   EXPECT_NEAR(frame.range_m[0], 3.5, 1e-3);
   EXPECT_NEAR(frame.amplitude[0] / (0.45 * 2e6 * 0.81 * 0.6 / (3.5 * 3.5)), 1.0, 0.01);
-  EXPECT_TRUE(stage.Expose("ideal", {}, {}, sheet).range_m[0] < 2.1f || stage.Expose("ideal", {}, {}, sheet).flags[0] & kInvalid);
+  EXPECT_TRUE(stage.Expose("ideal", {}, {}, sheet).range_m[0] < 2.1f ||
+              stage.Expose("ideal", {}, {}, sheet).flags[0] & kInvalid);
 }
 
 TEST(TofSpecular, SeesARetroReflectorByItsGain) {
@@ -238,9 +256,11 @@ TEST(TofLamp, MeasuresTheMeanOfTheWaysFromItsBoards) {
 
 TEST(TofLamp, FallsToHalfAtTheEdgeOfTheView) {
   DepthCameraSheet sheet = Sheet3kS();
-  const DepthFrame lobe = Stage({Wall(3.0)}).Expose("lamp", {}, {.lamp_at_edge = 0.5}), even = Stage({Wall(3.0)}).Expose("lamp", {}, {.lamp_at_edge = 1.0});
+  const DepthFrame lobe = Stage({Wall(3.0)}).Expose("lamp", {}, {.lamp_at_edge = 0.5}),
+                   even = Stage({Wall(3.0)}).Expose("lamp", {}, {.lamp_at_edge = 1.0});
   EXPECT_NEAR(lobe.amplitude[Pixel(32, 24)] / even.amplitude[Pixel(32, 24)], 1.0, 1e-3);
-  EXPECT_NEAR(lobe.amplitude[Pixel(0, 24)] / even.amplitude[Pixel(0, 24)], std::pow(0.5, std::pow(31.5 / 32.0, 2)), 1e-3);
+  EXPECT_NEAR(lobe.amplitude[Pixel(0, 24)] / even.amplitude[Pixel(0, 24)], std::pow(0.5, std::pow(31.5 / 32.0, 2)),
+              1e-3);
 }
 
 TEST(TofLamp, CastsTheShadowOfAPostFromEachBoard) {

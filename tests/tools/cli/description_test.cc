@@ -6,7 +6,8 @@ namespace merlin::cli {
 namespace {
 
 TEST(FirstSentence, MaySpanLinesAndEndsAtItsFullStop) {
-  EXPECT_EQ(FirstSentence("# The car drives 2.5 m\n# and stops. It then waits.\nroom: hall\n"), "The car drives 2.5 m and stops.");
+  EXPECT_EQ(FirstSentence("# The car drives 2.5 m\n# and stops. It then waits.\nroom: hall\n"),
+            "The car drives 2.5 m and stops.");
   EXPECT_EQ(FirstSentence("<!--\n  A hall for\n  tests. Origin: middle.\n-->\n<mujoco/>"), "A hall for tests.");
   EXPECT_EQ(FirstSentence("<!-- One line. -->\n<mujoco/>"), "One line.");
   EXPECT_EQ(FirstSentence("# Does it drive? It does.\n"), "Does it drive?");
@@ -14,9 +15,8 @@ TEST(FirstSentence, MaySpanLinesAndEndsAtItsFullStop) {
 }
 
 TEST(FirstSentence, IsNotCutAtNumbersAndAbbreviations) {
-  for (const std::string sentence :
-       {"A PMD CamCube 2.0 at 0.5 m/s.", "A room, e.g. Room No. 5, of Dr. Meyer.", "Ein Flur, z. B. Haus A, ca. 3 m lang.",
-        "The wall (cf. Fig. 2) is 3 m."})
+  for (const std::string sentence : {"A PMD CamCube 2.0 at 0.5 m/s.", "A room, e.g. Room No. 5, of Dr. Meyer.",
+                                     "Ein Flur, z. B. Haus A, ca. 3 m lang.", "The wall (cf. Fig. 2) is 3 m."})
     EXPECT_EQ(FirstSentence("# " + sentence + " Another one.\n"), sentence);
 }
 
@@ -35,8 +35,8 @@ TEST(FirstSentence, IsFoundBehindMarksAndFrames) {
 }
 
 TEST(FirstSentence, IsEmptyWhereTheFileBeginsWithNoComment) {
-  for (const char* text : {"", " \n", "room: hall\n# late\n", "<mujoco><worldbody/><!-- late --></mujoco>", "<mujoco", "<", "<!--", "#\n#\n",
-                           "<!-- -->", "<mujoco/>"})
+  for (const char* text : {"", " \n", "room: hall\n# late\n", "<mujoco><worldbody/><!-- late --></mujoco>", "<mujoco",
+                           "<", "<!--", "#\n#\n", "<!-- -->", "<mujoco/>"})
     EXPECT_EQ(FirstSentence(text), "") << text;
 }
 

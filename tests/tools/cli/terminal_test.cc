@@ -10,9 +10,9 @@ namespace {
 TEST(DisplayColumns, CountWhatATerminalTakes) {
   EXPECT_EQ(DisplayColumns(""), 0);
   EXPECT_EQ(DisplayColumns("Prüfung"), 7);
-  EXPECT_EQ(DisplayColumns("走廊"), 4);            // wide characters: two columns each (Unicode Standard Annex 11)
-  EXPECT_EQ(DisplayColumns("u\u0308ber"), 4);       // a combining diaeresis takes none
-  EXPECT_EQ(DisplayColumns("\xff\x01\n"), 3);       // shown as '?'
+  EXPECT_EQ(DisplayColumns("走廊"), 4);        // wide characters: two columns each (Unicode Standard Annex 11)
+  EXPECT_EQ(DisplayColumns("u\u0308ber"), 4);  // a combining diaeresis takes none
+  EXPECT_EQ(DisplayColumns("\xff\x01\n"), 3);  // shown as '?'
 }
 
 TEST(Cut, KeepsWholeCharactersThatFit) {

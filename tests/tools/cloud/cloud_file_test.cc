@@ -212,8 +212,7 @@ TEST(Ply, NamesEveryFaultAtOnce) {
 }
 
 TEST(Pcd, LeavesBytesBehindBinaryDataWithAWarning) {
-  const CloudFile file =
-      ParsePcd(PcdHeader("1", "binary") + Bytes<float>({1, 2, 3}) + std::string(4096, '\0'), "f");
+  const CloudFile file = ParsePcd(PcdHeader("1", "binary") + Bytes<float>({1, 2, 3}) + std::string(4096, '\0'), "f");
   ExpectPoints(file, {{1, 2, 3}});
   EXPECT_EQ(Warning(file), "f: 4096 bytes behind the data that its header tells of are not read");
 }
@@ -229,8 +228,9 @@ TEST(Pcd, IsReadCompressed) {
 
   const std::string mixed =
       "VERSION .7\nFIELDS normal y x z\nSIZE 1 8 4 2\nTYPE U F F I\nCOUNT 3 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\n"
-      "DATA binary_compressed\n" + Bytes<std::uint32_t>({36, 34}) + "\x1f" + "abcABC" + Bytes<double>({0.1, 5.6e6}) +
-      Bytes<float>({1, 2}) + Bytes<std::int16_t>({7}) + "\x01" + Bytes<std::int16_t>({-8});
+      "DATA binary_compressed\n" +
+      Bytes<std::uint32_t>({36, 34}) + "\x1f" + "abcABC" + Bytes<double>({0.1, 5.6e6}) + Bytes<float>({1, 2}) +
+      Bytes<std::int16_t>({7}) + "\x01" + Bytes<std::int16_t>({-8});
   ExpectPoints(ParsePcd(mixed, "f"), {{1, 0.1, 7}, {2, 5.6e6, -8}});
 }
 
@@ -309,34 +309,34 @@ TEST(Csv, IsReadWithAndWithoutHeaderAndBetweenAnything) {
 // Headers and columns as other tools write them.
 TEST(Csv, IsReadAsOtherToolsWriteIt) {
   const std::vector<Eigen::Vector3d> points{{1, 2, 3}, {-4, 0.5, 6}};
-  for (const char* text : {
-           "//X Y Z\n1 2 3\n-4 0.5 6\n",                                            // CloudCompare
-           "//X Y Z R G B Intensity\n2\n1 2 3 9 9 9 0.1\n-4 0.5 6 9 9 9 nan\n",      // with a count
-           "//Z;Y;X\n3;2;1;\n6;0.5;-4;\n",                                          //
-           "# remark\n# z y x\n3 2 1\n6 0.5 -4\n",                                  // numpy.savetxt
-           "# x y z in the map's frame\n1 2 3\n-4 0.5 6\n",                         // a remark, not a header
-           "x,y,z,class\n1,2,3,wall\n-4,0.5,6,\n",                                  // labels, empty cells
-           "class,x,y,z\n\"wall, north\",1,2,3\n,-4,0.5,6\n",                       //
-           "x,y,z,\n1,2,3,\n-4,0.5,6,\n",                                           // a comma at the end
-           "x,y,z,\n1,2,3\n-4,0.5,6\n",                                             //
-           "x,y,z\n1,2,3,\n-4,0.5,6,,\n",                                           //
-           "1,2,3,\n-4,0.5,6,\n",                                                   //
-           ",x,y,z\n0,1,2,3\n1,-4,0.5,6\n",                                         // pandas with its index
-           "2\r\n1 2 3 -5 0 0 0\r\n-4 0.5 6 -7 9 9 9\r\n",                          // .pts
-           "1\n1 2 3\n1\n-4 0.5 6\n",                                               // two scans in one .pts
-           "\xEF\xBB\xBF" "2\nx\ty\tz\tlabel\n1\t2\t3\ta wall\n-4\t0.5\t6\t\n",  //
-           "\"Points:0\",\"Points:1\",\"Points:2\"\n1,2,3\n-4,0.5,6\n",              // ParaView
-           "Easting,Northing,Elevation\n1,2,3\n-4,0.5,6\n",                         //
-           "X [m], Y [m], Z [m]\n\"1\", \"2\", \"3\"\n-4, 0.5, 6\n",               //
-           "\tx\ty\tz\n\t1\t2\t3\n\t-4\t0.5\t6\n",                                   //
-           "\t1\t2\t3\n\t-4\t0.5\t6\t\n",                                           // indented
-           "% matlab\n1,\t2,\t3\n-4,\t0.5,\t6\n"}) {
+  for (const char* text : {"//X Y Z\n1 2 3\n-4 0.5 6\n",                                         // CloudCompare
+                           "//X Y Z R G B Intensity\n2\n1 2 3 9 9 9 0.1\n-4 0.5 6 9 9 9 nan\n",  // with a count
+                           "//Z;Y;X\n3;2;1;\n6;0.5;-4;\n",                                       //
+                           "# remark\n# z y x\n3 2 1\n6 0.5 -4\n",                               // numpy.savetxt
+                           "# x y z in the map's frame\n1 2 3\n-4 0.5 6\n",    // a remark, not a header
+                           "x,y,z,class\n1,2,3,wall\n-4,0.5,6,\n",             // labels, empty cells
+                           "class,x,y,z\n\"wall, north\",1,2,3\n,-4,0.5,6\n",  //
+                           "x,y,z,\n1,2,3,\n-4,0.5,6,\n",                      // a comma at the end
+                           "x,y,z,\n1,2,3\n-4,0.5,6\n",                        //
+                           "x,y,z\n1,2,3,\n-4,0.5,6,,\n",                      //
+                           "1,2,3,\n-4,0.5,6,\n",                              //
+                           ",x,y,z\n0,1,2,3\n1,-4,0.5,6\n",                    // pandas with its index
+                           "2\r\n1 2 3 -5 0 0 0\r\n-4 0.5 6 -7 9 9 9\r\n",     // .pts
+                           "1\n1 2 3\n1\n-4 0.5 6\n",                          // two scans in one .pts
+                           "\xEF\xBB\xBF"
+                           "2\nx\ty\tz\tlabel\n1\t2\t3\ta wall\n-4\t0.5\t6\t\n",         //
+                           "\"Points:0\",\"Points:1\",\"Points:2\"\n1,2,3\n-4,0.5,6\n",  // ParaView
+                           "Easting,Northing,Elevation\n1,2,3\n-4,0.5,6\n",              //
+                           "X [m], Y [m], Z [m]\n\"1\", \"2\", \"3\"\n-4, 0.5, 6\n",     //
+                           "\tx\ty\tz\n\t1\t2\t3\n\t-4\t0.5\t6\n",                       //
+                           "\t1\t2\t3\n\t-4\t0.5\t6\t\n",                                // indented
+                           "% matlab\n1,\t2,\t3\n-4,\t0.5,\t6\n"}) {
     const CloudFile file = ParseCsv(text, "f");
     ExpectPoints(file, points);
     EXPECT_TRUE(file.warnings.empty() && file.left_out == 0) << text;
   }
-  for (const char* text : {"x;y;z\n1,0;2;3\n-4;0,5;6\n", "1,0 2,0 3,0\n-4 0,5 6\n",
-                           "1\t2\t3,0\twall, a\n-4\t0,5\t6\t\n"}) {
+  for (const char* text :
+       {"x;y;z\n1,0;2;3\n-4;0,5;6\n", "1,0 2,0 3,0\n-4 0,5 6\n", "1\t2\t3,0\twall, a\n-4\t0,5\t6\t\n"}) {
     const CloudFile file = ParseCsv(text, "f");
     ExpectPoints(file, points);
     EXPECT_EQ(Warning(file), "f: commas in its numbers are taken for decimal points");
@@ -414,8 +414,8 @@ TEST(CloudFile, SurvivesMutations) {
       {ParsePly, PlyHeader("binary_big_endian", elements) + binary_rows},
       {ParsePcd, PcdHeader("2", "ascii") + "1 2 3\n4 5 6\n"},
       {ParsePcd, PcdHeader("2", "binary") + Bytes<float>({1, 2, 3, 4, 5, 6})},
-      {ParsePcd, PcdHeader("2", "binary_compressed") + Bytes<std::uint32_t>({7, 24}) +
-                     std::string("\x00z\xe0\x0e\x00\x00z", 7)},
+      {ParsePcd,
+       PcdHeader("2", "binary_compressed") + Bytes<std::uint32_t>({7, 24}) + std::string("\x00z\xe0\x0e\x00\x00z", 7)},
       {ParseCsv, "x,y,z,sigma_m\n1,2,3,1\n4,5,6,0.5\n"}};
   const std::vector<std::string> words{
       "-1",       "999999999", "nan",   "list",  "vertex", "\n",           " ",

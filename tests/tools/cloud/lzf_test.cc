@@ -15,7 +15,13 @@ std::string Decompress(const std::string& data, std::size_t size) { return Decom
 
 // By hand: 3 bytes "abc"; 5 bytes (3 + 2) from 3 back, which overlap: "abcab"; 10 bytes (7 + 1 + 2) from 1 back.
 TEST(Lzf, GivesAStringWorkedByHand) {
-  EXPECT_EQ(Decompress(std::string("\x02" "abc" "\x60\x02" "\xe0\x01\x00", 9), 18), "abcabcabbbbbbbbbbb");
+  EXPECT_EQ(Decompress(std::string("\x02"
+                                   "abc"
+                                   "\x60\x02"
+                                   "\xe0\x01\x00",
+                                   9),
+                       18),
+            "abcabcabbbbbbbbbbb");
   EXPECT_EQ(Decompress("", 0), "");
   EXPECT_EQ(Decompress(std::string("\x00z", 2), 1), "z");
 }
@@ -89,15 +95,39 @@ void ExpectLzfRefused(const std::string& data, std::size_t size, const std::stri
 
 TEST(Lzf, RefusesWithTheByte) {
   ExpectLzfRefused("", 1, "f: byte 100: the compressed data give fewer bytes than they say; expected 1, got 0");
-  ExpectLzfRefused("\x02" "ab", 3, "f: byte 101: the compressed data end within a run");
-  ExpectLzfRefused("\x02" "abc\x60", 8, "byte 105: the compressed data end within a run");
-  ExpectLzfRefused("\x02" "abc\xe0", 20, "byte 105: the compressed data end within a run");
-  ExpectLzfRefused("\x02" "abc\xe0\x01", 20, "byte 106: the compressed data end within a run");
-  ExpectLzfRefused("\x02" "abc\x60\x03", 8, "byte 106: the compressed data repeat what is before their start");
+  ExpectLzfRefused(
+      "\x02"
+      "ab",
+      3, "f: byte 101: the compressed data end within a run");
+  ExpectLzfRefused(
+      "\x02"
+      "abc\x60",
+      8, "byte 105: the compressed data end within a run");
+  ExpectLzfRefused(
+      "\x02"
+      "abc\xe0",
+      20, "byte 105: the compressed data end within a run");
+  ExpectLzfRefused(
+      "\x02"
+      "abc\xe0\x01",
+      20, "byte 106: the compressed data end within a run");
+  ExpectLzfRefused(
+      "\x02"
+      "abc\x60\x03",
+      8, "byte 106: the compressed data repeat what is before their start");
   ExpectLzfRefused(std::string("\x60\x00", 2), 5, "before their start");
-  ExpectLzfRefused("\x02" "abc", 2, "more bytes than they say");
-  ExpectLzfRefused("\x02" "abc\x60\x02", 7, "more bytes than they say");
-  ExpectLzfRefused("\x02" "abc\x60\x02", 9, "fewer bytes than they say; expected 9, got 8");
+  ExpectLzfRefused(
+      "\x02"
+      "abc",
+      2, "more bytes than they say");
+  ExpectLzfRefused(
+      "\x02"
+      "abc\x60\x02",
+      7, "more bytes than they say");
+  ExpectLzfRefused(
+      "\x02"
+      "abc\x60\x02",
+      9, "fewer bytes than they say; expected 9, got 8");
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ TEST(ToCloud, KeepsATenthOfAMillimetreAtAnyDistance) {
       for (std::size_t i = 0; i < positions.size(); ++i)
         EXPECT_LE((file.cloud.positions[i] - positions[i]).norm(), 1e-4) << name << " " << far_m;
       EXPECT_EQ(file.rgb, rgb) << name;
-      const bool doubles = bytes.find("SIZE 8 8 8 4\n") != std::string::npos ||
-                           bytes.find("property double x\n") != std::string::npos;
+      const bool doubles =
+          bytes.find("SIZE 8 8 8 4\n") != std::string::npos || bytes.find("property double x\n") != std::string::npos;
       const bool text = name.ends_with("csv") || name.ends_with("CSV");
       EXPECT_EQ(doubles, far_m >= 2000.0 && !text) << name << " " << far_m;
     }
