@@ -83,9 +83,9 @@ PcdHeader ReadPcdHeader(std::string_view bytes, const std::string& name) {
 const std::vector<std::string>& Words(const PcdHeader& header, const char* key, std::size_t count,
                                       const std::string& name) {
   const auto entry = header.entries.find(key);
-  if (entry == header.entries.end()) throw InputError(name, "the header has no line " + key);
+  if (entry == header.entries.end()) throw InputError(name, std::string("the header has no line ") + key);
   if (count == 0 ? entry->second.empty() : entry->second.size() != count)
-    throw InputError(header.where.at(key), key + " has another number of words",
+    throw InputError(header.where.at(key), std::string(key) + " has another number of words",
                      count == 0 ? "some" : std::to_string(count), std::to_string(entry->second.size()));
   return entry->second;
 }
