@@ -44,8 +44,8 @@ class Avoid {
   Avoid(const Footprint& footprint, const AvoidConfig& config) : footprint_(footprint), config_(config) {}
 
   // Way the car can drive along the path (points of its base_link to be, in the base frame, in order, from the origin
-  // on) until its footprint, turned along the path, touches something. Nothing: no obstacle seen on it. Zero: something
-  // is too close to measure, or the camera looks aside.
+  // on) until its footprint, turned along the path, touches something. Nothing: no obstacle seen on it. Zero: something is too close
+  // to measure, or the camera looks aside.
   std::optional<double> FreeWay_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base);
 
   // The fastest speed from which the car, braking as planned, still stands stop_gap_m before the obstacle.

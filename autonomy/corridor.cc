@@ -39,8 +39,8 @@ double AxisYaw(const std::vector<WallPoint>& points, double hint_rad) {
   return WrapPi(hint_rad + std::arg(sum) / 4.0);  // normals are in the hint's frame: arg / 4 is within 45 deg of it
 }
 
-// Distance of the wall on one side (+1 left, -1 right): of the bins at least half as full as the fullest the farthest,
-// since pillars, cabinets and radiators stand before a wall.
+// Distance of the wall on one side (+1 left, -1 right): of the bins at least half as full as the fullest the farthest, since
+// pillars, cabinets and radiators stand before a wall.
 std::optional<double> SideWall(const std::vector<WallPoint>& points, double side, const CorridorConfig& config) {
   std::vector<int> bins(static_cast<std::size_t>(config.side_max_m / kBin_m) + 2, 0);
   for (const WallPoint& point : points) {

@@ -58,8 +58,8 @@ struct OdometryCalibration {
   int iterations = 0;
 };
 
-// Least squares over the drives (Gauss-Newton from the described values). Drives that leave a value open (one side
-// only, no straight one) or contradict each other are a problem, named.
+// Least squares over the drives (Gauss-Newton from the described values). Drives that leave a value open (one side only,
+// no straight one) or contradict each other are a problem, named.
 OdometryCalibration CalibrateOdometry(const CarDescription& described, const MeasuredDrives& drives);
 
 }  // namespace merlin

@@ -11,8 +11,7 @@
 namespace merlin {
 
 // How much farther the mean of the four wheels rolls than the rear axle's middle, on a circle: the encoder sits behind
-// ideal differentials and counts the former. 1 at 0, 1.053 at 25 deg for wheelbase 0.33 m, track 0.26 m; even in the
-// angle.
+// ideal differentials and counts the former. 1 at 0, 1.053 at 25 deg for wheelbase 0.33 m, track 0.26 m; even in the angle.
 double WheelMeanRatio(double wheelbase_m, double track_m, double steering_rad);
 
 // Random errors of the wheels, as white noise along the path: they grow with its root, whatever the rate of the states.
@@ -37,8 +36,8 @@ class Odometry {
   // Pose of the car at a time between the oldest and newest state kept (about a second); clamped to these.
   // Nothing before the first state.
   std::optional<Pose> At(Time time) const;
-  // Of x [m], y [m] and yaw [rad] in the odometry's frame, since the first state, to first order; that of the last
-  // state at or before the time.
+  // Of x [m], y [m] and yaw [rad] in the odometry's frame, since the first state, to first order; that of the last state
+  // at or before the time.
   std::optional<Eigen::Matrix3d> CovarianceAt(Time time) const;
 
  private:
@@ -56,8 +55,8 @@ class Odometry {
 };
 
 // The heading: compass (absolute, noisy) and odometry (smooth, drifting) as a Kalman filter of one state, the angle
-// between the odometry's frame and the world. Readings that differ from what the wheels lead to expect, all to one side
-// and more than noise would, come from a field that steel bends: they are left out until they agree again.
+// between the odometry's frame and the world. Readings that differ from what the wheels lead to expect, all to one side and
+// more than noise would, come from a field that steel bends: they are left out until they agree again.
 struct HeadingConfig {
   double compass_sigma_rad = 0.0175;     // [0.001, 1] of one reading; 1 deg: noise 0.3-1 deg, guess of the data sheet
   double drift_per_turn = 0.01;          // [0, 1] odometry's yaw error per rad turned; guess

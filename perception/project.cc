@@ -34,8 +34,8 @@ std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera) {
 
 namespace {
 
-// A driver that puts the range of a dark pixel to 0 calls it invalid too. One that clipped, or moved, is dark as well:
-// what is left of its phase is no measure of the light.
+// A driver that puts the range of a dark pixel to 0 calls it invalid too. One that clipped, or moved, is dark as well: what
+// is left of its phase is no measure of the light.
 bool IsDark(const FilteredDepth& depth, std::size_t i) {
   const std::uint8_t flags = depth.frame.flags[i];
   return (depth.reasons[i] == Rejection::kGhost || (flags & kLowSignal) != 0) &&

@@ -35,8 +35,8 @@ class FreeRange {
   double darkest_e_m2_, least_e_, farthest_m_;
 };
 
-// Accepted pixels as points in the base frame; those too dark, or dark enough to be ghosts, as the way that is free
-// before them; all others as directions.
+// Accepted pixels as points in the base frame; those too dark, or dark enough to be ghosts, as the way that is free before
+// them; all others as directions.
 void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, const std::vector<Eigen::Vector3f>& rays,
                   const Pose& T_base_camera, Observation& observation);
 

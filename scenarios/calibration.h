@@ -9,8 +9,8 @@
 
 namespace merlin {
 
-// The keys of CarCalibration, all of them. Throws InputError: file and line, unknown key (names the nearest), missing
-// one, a value out of its range: all faults at once.
+// The keys of CarCalibration, all of them. Throws InputError: file and line, unknown key (names the nearest), missing one,
+// a value out of its range: all faults at once.
 CarCalibration ReadCalibration(const std::filesystem::path& file);
 std::string ToYaml(const CarCalibration& calibration);
 

@@ -1,5 +1,4 @@
-// The main loop, the same for the twin, a recording and the real car: wait for the tick, poll, perceive, locate,
-// decide, drive.
+// The main loop, the same for the twin, a recording and the real car: wait for the tick, poll, perceive, locate, decide, drive.
 #pragma once
 
 #include <atomic>

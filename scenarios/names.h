@@ -10,8 +10,7 @@ namespace merlin {
 // The folder that holds models/ and scenarios/: $MERLIN_HOME, default the source tree this was built from.
 std::filesystem::path Home();
 
-// Each takes a name or a path (with a '/' or the kind's ending) and throws InputError for one that is not there, naming
-// the nearest.
+// Each takes a name or a path (with a '/' or the kind's ending) and throws InputError for one that is not there, naming the nearest.
 std::filesystem::path ScenarioFile(const std::string& name_or_path);     // scenarios/<name>.yaml
 std::filesystem::path RoomFile(const std::string& name_or_path);         // models/rooms/<name>.xml
 std::filesystem::path CameraFile(const std::string& name_or_path);       // models/cameras/<name>.yaml

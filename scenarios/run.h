@@ -1,5 +1,5 @@
-// Runs a scenario: in the twin, in the twin behind its real drivers and protocols, or on the real car; judges it
-// against the truth where there is one, and leaves its files.
+// Runs a scenario: in the twin, in the twin behind its real drivers and protocols, or on the real car; judges it against the
+// truth where there is one, and leaves its files.
 #pragma once
 
 #include <atomic>

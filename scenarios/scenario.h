@@ -170,10 +170,9 @@ void Visit(Visitor& v, Scenario& c) {
   v("pilot", c.pilot);
 }
 
-// name: of a file in scenarios/ without its ending, or a path; paths in it are relative to its own folder. overrides:
-// "a.b=c" each, applied over the file. Throws InputError: unknown scenario or key (names the nearest), broken YAML
-// (file and line), a value of the wrong kind or out of its range, an unknown check or behavior: all faults at once, a
-// line each.
+// name: of a file in scenarios/ without its ending, or a path; paths in it are relative to its own folder. overrides: "a.b=c" each, applied over the file.
+// Throws InputError: unknown scenario or key (names the nearest), broken YAML (file and line), a value of the wrong kind or
+// out of its range, an unknown check or behavior: all faults at once, a line each.
 Scenario ReadScenario(const std::string& name, const std::vector<std::string>& overrides);
 
 // The scenario with every default written out; reading it gives the same scenario.

@@ -16,8 +16,8 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options);
 // The car as the stack knows it: its description, and what a calibration found better.
 CarDescription BelievedCar(const CarChoice& choice);
 
-// Takes out of the sensors the colour camera and the compass that the car does not have, with a warning for each.
-// Throws InputError where the scenario requires colour.
+// Takes out of the sensors the colour camera and the compass that the car does not have, with a warning for each. Throws
+// InputError where the scenario requires colour.
 void LeaveOutWhatTheCarLacks(const CarDescription& car, Sensors& sensors, std::vector<std::string>& warnings);
 
 // Calls make with the options, colour included if this machine can draw it. Without GL a scenario that can do without

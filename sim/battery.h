@@ -5,8 +5,8 @@
 
 namespace merlin::sim {
 
-// A DC motor behind an H-bridge, averaged over the PWM: it sees duty times the terminal voltage, and what it draws
-// loads the battery with duty times its current: no power is lost or made in the bridge.
+// A DC motor behind an H-bridge, averaged over the PWM: it sees duty times the terminal voltage, and what it draws loads
+// the battery with duty times its current: no power is lost or made in the bridge.
 struct MotorLoad {
   double duty = 0.0;  // [-1, 1]; 0: shorted, it brakes and draws nothing
   double back_emf_v = 0.0;
@@ -22,8 +22,8 @@ class Battery {
   Battery(const BatteryConfig& config, double nominal_v);
 
   double OpenCircuit_v() const;
-  // Under the motor and the electronics: both loads and the inner resistance solved together. A motor that brakes
-  // against the bridge (duty * current < 0) feeds back and raises it.
+  // Under the motor and the electronics: both loads and the inner resistance solved together. A motor that brakes against
+  // the bridge (duty * current < 0) feeds back and raises it.
   double Terminal_v(const MotorLoad& motor) const;
   // The charge that this takes, or brings back, in a time.
   void Feed(const MotorLoad& motor, double duration_s);

@@ -135,8 +135,8 @@ void AddVisual(mjSpec* spec, const CarLink& link, const mjsDefault* plain, mjsBo
   }
 }
 
-// The body whose part a link is when it meets the room: its own if it moves against its parent, else the one it is
-// fixed to. Six bodies to hold against every wall instead of a dozen: physics alone is a quarter faster.
+// The body whose part a link is when it meets the room: its own if it moves against its parent, else the one it is fixed
+// to. Six bodies to hold against every wall instead of a dozen: physics alone is a quarter faster.
 struct Carrier {
   mjsBody* body;
   Pose T_carrier_link;

@@ -14,9 +14,8 @@ constexpr int kVisualGroup = 1;
 constexpr int kCollisionGroup = 3;
 
 // Adds the car with a free joint at T_world_base to the world body; of its other joints only those of wheels,
-// knuckles and of a pan unit that moves do. Materials that the spec does not have yet are added by name. A wheel
-// touches the ground with an ellipsoid of the tyre's radius and width: a cylinder would touch with two points, which
-// scrub in a turn.
+// knuckles and of a pan unit that moves do. Materials that the spec does not have yet are added by name. A wheel touches the ground with an
+// ellipsoid of the tyre's radius and width: a cylinder would touch with two points, which scrub in a turn.
 void AddTo(mjSpec* spec, const CarDescription& car, const Pose& T_world_base);
 
 // The wheel whose link has this place in car.links; null if it is none.

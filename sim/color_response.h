@@ -22,8 +22,7 @@ class ColorResponse {
 
   // In place, from a rendered picture as the lens forms it to what the camera delivers. Electrons of a pixel: full well
   // times linear light times exposure over nominal exposure times cos^falloff_power; shot noise of as many electrons
-  // (Gaussian) and read noise; clipped at the full well; times gain and white balance; 4096 steps, clipped, coded in 8
-  // bit.
+  // (Gaussian) and read noise; clipped at the full well; times gain and white balance; 4096 steps, clipped, coded in 8 bit.
   void Expose(std::span<std::uint8_t> bgr, const ColorSettings& settings, std::uint64_t frame) const;
 
  private:

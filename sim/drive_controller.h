@@ -1,5 +1,5 @@
-// The on-board electronics of the drive: battery, H-bridge, microcontroller with its speed loop, encoder and servo.
-// They turn a DriveCommand into volts and a steering set point, and report.
+// The on-board electronics of the drive: battery, H-bridge, microcontroller with its speed loop, encoder and servo. They
+// turn a DriveCommand into volts and a steering set point, and report.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -16,8 +16,8 @@
 namespace merlin::sim {
 
 // The speed loop (feed-forward and PI, limited in acceleration) runs at its own rate from encoder counts. It knows the
-// linkage and regulates the speed of the rear axle's middle, not the four wheels' mean. It believes the description: a
-// car of another wheel radius or wheelbase drives another speed.
+// linkage and regulates the speed of the rear axle's middle, not the four wheels' mean. It believes the description: a car
+// of another wheel radius or wheelbase drives another speed.
 class DriveController {
  public:
   DriveController() = default;

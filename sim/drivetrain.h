@@ -1,5 +1,5 @@
-// The car's motor and steering as the twin has them: MuJoCo's dcmotor on a differential tendon, and a steering servo
-// with slew. What feeds them is sim/drive_controller.h.
+// The car's motor and steering as the twin has them: MuJoCo's dcmotor on a differential tendon, and a steering servo with
+// slew. What feeds them is sim/drive_controller.h.
 #pragma once
 
 #include <mujoco/mujoco.h>

@@ -1,5 +1,4 @@
-// How the twin's drive errs, as a real car's does. Every value has one that switches it off; IdealDrivetrain() has them
-// all.
+// How the twin's drive errs, as a real car's does. Every value has one that switches it off; IdealDrivetrain() has them all.
 #pragma once
 
 #include <string>

@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kPerStep_rad = std::numbers::pi_v<float> * 0x1p-31f;
 
-// Natural logarithm of x in (0, 1], error < 2e-7 of it or of 1: the minimax polynomial of Cephes (Moshier, logf),
-// without branches. 2^-33 is the least that comes.
+// Natural logarithm of x in (0, 1], error < 2e-7 of it or of 1: the minimax polynomial of Cephes (Moshier, logf), without
+// branches. 2^-33 is the least that comes.
 inline float Log(float x) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
   float exponent = static_cast<float>(static_cast<int>(bits >> 23) - 126);

@@ -9,9 +9,8 @@
 namespace merlin::sim {
 namespace {
 
-// The loops of a frame follow each other closely, with a little work of one thread in between: a thread looks out for
-// the next one this long before it sleeps. To be woken takes as long as some loops, and may put it onto the caller's
-// own core.
+// The loops of a frame follow each other closely, with a little work of one thread in between: a thread looks out for the
+// next one this long before it sleeps. To be woken takes as long as some loops, and may put it onto the caller's own core.
 constexpr std::chrono::microseconds kLookOut{500};
 
 template <class Condition>

@@ -9,9 +9,8 @@
 
 namespace merlin::sim {
 
-// Calls work on this thread and, as far as they are free, on up to others threads that wait for such calls (they stay
-// for the process' life: to start one takes as long as a small loop). Returns when all have returned. work must not
-// throw.
+// Calls work on this thread and, as far as they are free, on up to others threads that wait for such calls (they stay for
+// the process' life: to start one takes as long as a small loop). Returns when all have returned. work must not throw.
 void OnSeveralThreads(int others, const std::function<void()>& work);
 
 // Calls work(i) once for each i in [0, count), on this thread and threads - 1 others. What a call throws comes out.

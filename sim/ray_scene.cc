@@ -22,8 +22,7 @@ constexpr float kBoundsMargin_m = 1e-4f;  // a curved geom's box must hold it in
 
 constexpr unsigned kOpaqueMask = 1, kPaneMask = 2;
 
-// Embree's numbers of the g-th group's geometries, in whichever scene they are: 2 g for triangles, 2 g + 1 for curved
-// ones.
+// Embree's numbers of the g-th group's geometries, in whichever scene they are: 2 g for triangles, 2 g + 1 for curved ones.
 constexpr unsigned TrianglesId(unsigned group) { return 2 * group; }
 constexpr unsigned CurvedId(unsigned group) { return 2 * group + 1; }
 constexpr bool IsCurved(unsigned id) { return id % 2 == 1; }
@@ -192,8 +191,7 @@ struct Lanes {
 };
 
 // Nearest hits of rays from one place in neighbouring directions, which go down the hierarchy together (coherent); and
-// whether rays to lights meet anything, each on its own (incoherent). Embree 4 takes as arguments what 3 calls a
-// context.
+// whether rays to lights meet anything, each on its own (incoherent). Embree 4 takes as arguments what 3 calls a context.
 #if MERLIN_EMBREE == 4
 void Intersect(const Lanes& lanes, RTCScene scene, RTCRayHit8& packet) {
   RTCRayQueryContext context;

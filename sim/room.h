@@ -22,14 +22,14 @@ InputError RoomError(const std::filesystem::path& room, const std::string& what,
 // there is none.
 SpecPtr ReadRoom(const std::filesystem::path& room, bool curtain_closed);
 
-// The room compiled for itself, as its own compiler options say, with geoms and bodies in the order of ReadRoom's spec;
-// its meshes get no convex hulls. Throws InputError as ReadRoom does, and where the room does not compile: also where
-// it names what it does not have, such as parts of the car.
+// The room compiled for itself, as its own compiler options say, with geoms and bodies in the order of ReadRoom's spec; its
+// meshes get no convex hulls. Throws InputError as ReadRoom does, and where the room does not compile: also where it names
+// what it does not have, such as parts of the car.
 ModelPtr CompileAlone(const std::filesystem::path& room, bool curtain_closed);
 
-// Takes out of the spec what would reach a car that is added to it: physics options, compiler options (the room's
-// moving bodies keep the masses and inertias that these gave them in alone), sizes, keyframes (which have no place for
-// the car).
+// Takes out of the spec what would reach a car that is added to it: physics options, compiler options (the room's moving
+// bodies keep the masses and inertias that these gave them in alone), sizes, keyframes (which have no place for the
+// car).
 void KeepFromCar(mjSpec* room, const mjModel* alone);
 
 // "wall_north", or "geom 12" for one without a name.

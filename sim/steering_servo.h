@@ -1,5 +1,5 @@
-// The steering servo as its electronics drive it: pulses, hold, dead band, play in the linkage. Its slew is the
-// actuator's (sim/drivetrain.h).
+// The steering servo as its electronics drive it: pulses, hold, dead band, play in the linkage. Its slew is the actuator's
+// (sim/drivetrain.h).
 #pragma once
 
 #include "robot/types/time.h"
@@ -7,8 +7,8 @@
 
 namespace merlin::sim {
 
-// Pulse width for a steering angle in [-max, max], and back: 2.0 ms full left, 1.6 ms straight, 1.0 ms full right
-// (thesis), straight lines between. A microsecond to the left turns more than one to the right.
+// Pulse width for a steering angle in [-max, max], and back: 2.0 ms full left, 1.6 ms straight, 1.0 ms full right (thesis),
+// straight lines between. A microsecond to the left turns more than one to the right.
 double PulseOf_us(double steering_rad, double steering_max_rad);
 double AngleOf_rad(double pulse_us, double steering_max_rad);
 

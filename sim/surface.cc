@@ -9,8 +9,8 @@
 namespace merlin::sim {
 namespace {
 
-// In a contact the geom of higher priority sets friction and stiffness alone; among equals the larger friction would
-// count. A floor of higher priority than the tyres, else like a tyre, changes the friction and nothing else.
+// In a contact the geom of higher priority sets friction and stiffness alone; among equals the larger friction would count.
+// A floor of higher priority than the tyres, else like a tyre, changes the friction and nothing else.
 void HoldTyres(mjModel* model, int floor, int tyre, double grip) {
   model->geom_priority[floor] = model->geom_priority[tyre] + 1;
   model->geom_condim[floor] = model->geom_condim[tyre];

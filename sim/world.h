@@ -53,9 +53,8 @@ class World {
   // The car touches whatever of the room its cameras see (sim/solid.h), and nothing of the room changes the car. Throws
   // InputError: a room that is missing or not MJCF (with its line where MuJoCo knows it), a missing mesh, a room
   // without a geom named "floor*", a curtain to close where there is none, a car that starts off the floor, in contact
-  // with anything else or inside it, a drivetrain out of its ranges, a surface that is no material, a geom that cannot
-  // be made solid. Physics options (step, integrator, solver) are ours, whatever the room says. Errors of MuJoCo itself
-  // throw std::runtime_error from then on, in the whole process; it prints and logs nothing.
+  // with anything else or inside it, a drivetrain out of its ranges, a surface that is no material, a geom that cannot be made solid. Physics options (step, integrator, solver) are ours, whatever the room says.
+  // Errors of MuJoCo itself throw std::runtime_error from then on, in the whole process; it prints and logs nothing.
   explicit World(const WorldOptions& options);
   ~World();
   World(const World&) = delete;

@@ -29,8 +29,7 @@ struct Keyframe {
   double in_local_map_m = 0.0;  // path at which its points were last put into the local map
 };
 
-// The middle of what it sees, about: what two key frames have in common is a matter of these rather than of where they
-// stand.
+// The middle of what it sees, about: what two key frames have in common is a matter of these rather than of where they stand.
 inline Eigen::Vector2d ViewCentre(const Pose& T_map_base) {
   constexpr double kAhead_m = 2.5;
   return (T_map_base * Eigen::Vector3d(kAhead_m, 0.0, 0.0)).head<2>();

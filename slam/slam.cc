@@ -88,8 +88,8 @@ std::optional<Pose> Slam::Update(const Observation& observation) {
   return T_map_base;
 }
 
-// Nothing that it sees has been in its map for a while, and the car stands: what odometry was wrong by on the little
-// way since then is a lesser evil than to stand there for good.
+// Nothing that it sees has been in its map for a while, and the car stands: what odometry was wrong by on the little way
+// since then is a lesser evil than to stand there for good.
 bool Slam::GivesUp(Time stamp, bool stands) {
   if (lost_frames_ == 0 || !stands)
     lost_standing_.reset();
@@ -98,8 +98,8 @@ bool Slam::GivesUp(Time stamp, bool stands) {
   return lost_standing_ && Seconds(stamp - *lost_standing_) >= config_.restart_s;
 }
 
-// What registration adds to the way along it, as a share of the way, averaged. While the wheels slip it lags behind,
-// but each frame it takes back what the frame's own way was wrong by.
+// What registration adds to the way along it, as a share of the way, averaged. While the wheels slip it lags behind, but
+// each frame it takes back what the frame's own way was wrong by.
 void Slam::WatchWheels(const Pose& motion, const Pose& T_prior_registered) {
   const double way_m = motion.translation().norm();
   if (way_m <= 0.0) return;

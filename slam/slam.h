@@ -91,9 +91,9 @@ class Slam {
   // Registration takes back (or adds) this share of the way that the wheels report, of late.
   bool slipping() const { return std::abs(slip_) > config_.slip_min; }
   const VoxelMap& local_map() const { return local_; }
-  // A closed loop corrects poses, key frames and the local map at once. The grid follows later, so that no frame takes
-  // long: it shows former key frames where they were believed before for up to 40 frames (KeyframeGrid::kFrames; 2 s at
-  // 20 Hz), and up to 80 where the next loop is closed meanwhile. New key frames are in it at once.
+  // A closed loop corrects poses, key frames and the local map at once. The grid follows later, so that no frame takes long:
+  // it shows former key frames where they were believed before for up to 40 frames (KeyframeGrid::kFrames; 2 s at 20 Hz),
+  // and up to 80 where the next loop is closed meanwhile. New key frames are in it at once.
   const OccupancyGrid& occupancy() const { return grid_.grid(); }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const std::vector<MapPose>& online() const { return online_; }  // one pose a frame, as the car drove by it
@@ -101,8 +101,8 @@ class Slam {
   double path_m() const { return path_m_; }
   int loops() const { return closer_.loops(); }  // that join two key frames
 
-  // The whole map, from all key frames, coloured: without what moved away. Of its voxels those with at least
-  // map_points_min points are meant to be used.
+  // The whole map, from all key frames, coloured: without what moved away. Of its voxels those with at least map_points_min
+  // points are meant to be used.
   VoxelMap BuildMap() const;
   // The whole grid, from all key frames as the closed loops correct them.
   OccupancyGrid BuildOccupancy() const { return GridOf(keyframes_, config_.occupancy); }

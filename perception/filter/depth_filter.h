@@ -43,9 +43,9 @@ struct FilteredDepth {
   std::array<int, static_cast<std::size_t>(Rejection::kCount)> counts{};
 };
 
-// True if a pixel is darker than any surface at its range should be, so that it must lie an unambiguous range U
-// farther: its implied albedo amplitude r^2 / lamp is below ghost_albedo (r / (r + U))^2. Departure from a physical
-// test of the incidence angle, which one pixel does not know: very oblique dark surfaces are rejected too.
+// True if a pixel is darker than any surface at its range should be, so that it must lie an unambiguous range U farther:
+// its implied albedo amplitude r^2 / lamp is below ghost_albedo (r / (r + U))^2. Departure from a physical test of the
+// incidence angle, which one pixel does not know: very oblique dark surfaces are rejected too.
 bool IsGhost(double range_m, double amplitude_e, double lamp_amplitude_e_m2, double unambiguous_m, double ghost_albedo);
 
 // Camera flags, ghosts, then agreement with neighbours and the median (thesis eq. 4.6-4.8: amplitude, then median).

@@ -11,8 +11,8 @@
 //   drivetrain: {gear: 10, ...}             # as the element <drivetrain> of models/merlin/merlin.urdf
 //
 // A role that the file leaves out has the name of the rule. Where there is a file, and no link of the rule's name, a
-// colour camera or compass that it leaves out is not there. A URDF that follows the rule and has a <drivetrain> needs
-// no file.
+// colour camera or compass that it leaves out is not there. A URDF that follows the rule and has a <drivetrain> needs no
+// file.
 #pragma once
 
 #include <array>

@@ -12,11 +12,11 @@ namespace merlin {
 
 // Any URDF of a car-like robot whose wheels, steering and sensors go by the rule's names (wheel_front_left_joint,
 // steer_front_left_joint, depth_camera_optical_frame, ...) or by a mapping beside it: see
-// robot/description/car_mapping.h. Meshes are found as ROS lays packages out: robot/description/mesh_path.h. A mesh
-// with a negative scale is mirrored. Left and right may be up to 5 mm off symmetry; a warning of the description says
-// so. Throws InputError, a line for each fault: file, line where the parser knows it, link or joint, and what is
-// missing or wrong (a shape that URDF does not know, a missing mesh, a wheel or frame that the car needs, a
-// non-positive mass or dimension): robot/description/urdf_check.h. No shape is left out.
+// robot/description/car_mapping.h. Meshes are found as ROS lays packages out: robot/description/mesh_path.h. A mesh with
+// a negative scale is mirrored. Left and right may be up to 5 mm off symmetry; a warning of the description says so.
+// Throws InputError, a line for each fault: file, line where the parser knows it, link or joint, and what is missing or
+// wrong (a shape that URDF does not know, a missing mesh, a wheel or frame that the car needs, a non-positive mass or
+// dimension): robot/description/urdf_check.h. No shape is left out.
 CarDescription ReadCar(const std::filesystem::path& urdf);
 
 // What a file describes, by its keys: none for a map without one key of a camera, unknown where they do not tell.

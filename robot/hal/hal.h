@@ -1,6 +1,5 @@
-// The hardware abstraction layer: five devices and a clock, a page each. Simulated, replayed and real robots are
-// structs of these; the stack never meets anything else. No call blocks but Clock::WaitUntil; threads belong to the
-// plugs.
+// The hardware abstraction layer: five devices and a clock, a page each. Simulated, replayed and real robots are structs
+// of these; the stack never meets anything else. No call blocks but Clock::WaitUntil; threads belong to the plugs.
 #pragma once
 
 #include "robot/hal/clock.h"

@@ -22,8 +22,8 @@ Eigen::Matrix2d Jacobian(const CameraModel& camera, const Eigen::Vector2d& xy) {
   return J;
 }
 
-// Newton's method, its step halved until it comes nearer without crossing a fold (determinant 0). From the axis
-// outwards this stays in the field around the axis.
+// Newton's method, its step halved until it comes nearer without crossing a fold (determinant 0). From the axis outwards
+// this stays in the field around the axis.
 Eigen::Vector2d Invert(const CameraModel& camera, const Eigen::Vector2d& wanted, Eigen::Vector2d xy) {
   const Eigen::Vector2d none = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::Vector2d missing = wanted - camera.Distort(xy);

@@ -1,5 +1,4 @@
-// The pinhole camera with OpenCV's lens distortion, and its pixel convention: (0, 0) is the centre of the upper left
-// pixel.
+// The pinhole camera with OpenCV's lens distortion, and its pixel convention: (0, 0) is the centre of the upper left pixel.
 #pragma once
 
 #include <Eigen/Core>

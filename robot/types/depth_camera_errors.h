@@ -1,7 +1,6 @@
 // How a model of time-of-flight camera errs: what the simulated camera does to its measurements and the stack must not
 // know. A sheet (models/cameras/<name>.yaml, key `errors`) lists what differs from these defaults. Origins: (g)
-// engineering guess, (m) recalled from the named paper; every one is a starting value for a calibration of the real
-// camera.
+// engineering guess, (m) recalled from the named paper; every one is a starting value for a calibration of the real camera.
 #pragma once
 
 #include "robot/types/config.h"

@@ -8,8 +8,7 @@
 
 namespace merlin {
 
-// Attitude of the body: rotation about x, y, z (roll, pitch, yaw; R = Rz Ry Rx), yaw counter-clockwise from the world's
-// x axis.
+// Attitude of the body: rotation about x, y, z (roll, pitch, yaw; R = Rz Ry Rx), yaw counter-clockwise from the world's x axis.
 struct CompassReading {
   Time stamp{0};
   double roll_rad = 0.0;

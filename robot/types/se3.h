@@ -1,7 +1,6 @@
 // Rigid motions. A pose T_a_b is an Eigen::Isometry3d that maps coordinates in b to a: p_a = T_a_b * p_b.
 // Tangent vectors are (translation [m], rotation [rad]); Exp and Log as in Sola, Deray, Atchuthan, "A micro Lie theory
-// for state estimation in robotics" (2018), eq. 172-174, with series near zero. Compiled once: Eigen's products are
-// slow to compile.
+// for state estimation in robotics" (2018), eq. 172-174, with series near zero. Compiled once: Eigen's products are slow to compile.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -29,8 +28,7 @@ Eigen::Matrix3d LeftJacobianSo3(const Eigen::Vector3d& w);
 Pose Exp(const Vector6d& tangent);
 Vector6d Log(const Pose& pose);
 
-// A small motion x after the pose is the small motion Adjoint(pose) x before it: pose Exp(x) = Exp(Adjoint(pose) x)
-// pose.
+// A small motion x after the pose is the small motion Adjoint(pose) x before it: pose Exp(x) = Exp(Adjoint(pose) x) pose.
 Matrix6d Adjoint(const Pose& pose);
 
 // Constant-velocity interpolation: T_w_a at share 0, T_w_b at share 1.

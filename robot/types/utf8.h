@@ -1,5 +1,4 @@
-// Text as bytes of UTF-8 (RFC 3629), one character at a time. It may come from anywhere: a file's name need not be
-// valid.
+// Text as bytes of UTF-8 (RFC 3629), one character at a time. It may come from anywhere: a file's name need not be valid.
 #pragma once
 
 #include <cstddef>

@@ -28,8 +28,7 @@ std::vector<double> TruePath_m(std::span<const PosePair> pairs) {
   return path_m;
 }
 
-// The instant after i nearest to a distance further along the path, the first of equals; nothing if none is near
-// enough.
+// The instant after i nearest to a distance further along the path, the first of equals; nothing if none is near enough.
 std::optional<std::size_t> Partner(const std::vector<double>& path_m, std::size_t i, double distance_m) {
   const auto at_least = [&path_m, i](double length_m) {
     return std::partition_point(path_m.begin() + i + 1, path_m.end(),

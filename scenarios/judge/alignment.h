@@ -46,11 +46,11 @@ struct Ate {
 // Nothing for no pairs, a number that is not finite, or a scale that nothing tells (an estimate that stands).
 std::optional<Ate> AlignAndAte(std::span<const PosePair> pairs, Alignment alignment = Alignment::kSe3);
 
-// Relative pose errors over a distance along the true path: each instant i is paired with the later instant j whose
-// path length from i along the truth is nearest to the distance (the first of equals), unless that is off by more than
-// a tenth. E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), Q the truth, P the estimate (J. Sturm et al., "A benchmark for the
-// evaluation of RGB-D SLAM systems", IROS 2012), whose positions are scaled first. One of each a pair; empty where no
-// pair exists or a number is not finite.
+// Relative pose errors over a distance along the true path: each instant i is paired with the later instant j whose path
+// length from i along the truth is nearest to the distance (the first of equals), unless that is off by more than a tenth.
+// E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), Q the truth, P the estimate (J. Sturm et al., "A benchmark for the evaluation of RGB-D
+// SLAM systems", IROS 2012), whose positions are scaled first. One of each a pair; empty where no pair exists or a number
+// is not finite.
 struct RelativeErrors {
   std::vector<double> translation_m, rotation_rad;
 };

@@ -7,8 +7,8 @@
 
 namespace merlin {
 
-// Throws InputError, with nothing changed, for a file that cannot be written: an empty path, a folder or a device of
-// that name, no folder around it, no permission. MachineError when the disk is full.
+// Throws InputError, with nothing changed, for a file that cannot be written: an empty path, a folder or a device of that
+// name, no folder around it, no permission. MachineError when the disk is full.
 void CheckOutputFile(const std::filesystem::path& file);
 
 // Throw InputError. error: of errno; MachineError where it says that the disk is full or broken.

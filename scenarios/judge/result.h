@@ -21,8 +21,8 @@ struct RunResult {
   std::string scenario{};
   std::uint64_t seed = 0;
   Verdict verdict = Verdict::kFail;
-  std::string fault{};  // what ended the run before its time, but not an interruption: a lost device, an empty battery;
-                        // else empty
+  std::string
+      fault{};  // what ended the run before its time, but not an interruption: a lost device, an empty battery; else empty
   std::vector<Check> checks{};
   Metrics metrics{};
   Hashes hashes{};

@@ -52,8 +52,8 @@ struct SubFrame {
   double Middle_s() const { return begin_s + 0.5 * integration_s; }
 };
 
-// What the sub-frames need not trace: sub-rays that in the mid-exposure are far enough from any edge are taken from
-// their plane.
+// What the sub-frames need not trace: sub-rays that in the mid-exposure are far enough from any edge are taken from their
+// plane.
 struct FramePlan {
   struct Stretch {
     std::size_t begin, end;  // in the row: neighbours with one instant and one face
@@ -77,8 +77,7 @@ class SubFrameTracer {
   void Row(int row, RowHits& hits, RowRays& rays) const;
 
  private:
-  // A face as seen at one instant: normal in the optical frame, towards the lens, and the lens' distance from the
-  // plane.
+  // A face as seen at one instant: normal in the optical frame, towards the lens, and the lens' distance from the plane.
   struct SeenFace {
     Eigen::Vector3f normal_camera{0, 0, 0};
     float distance_m = 0.0f;

@@ -24,8 +24,7 @@ struct ExtraReturn {
   Eigen::Vector3f point{0, 0, 0};
 };
 
-// Reflectance of a pane's two faces together at this cosine of incidence (Fresnel; for each polarisation R + R (1 -
-// R)^2 +
+// Reflectance of a pane's two faces together at this cosine of incidence (Fresnel; for each polarisation R + R (1 - R)^2 +
 // ... = 2 R / (1 + R), their mean taken), and what passes, absorption included.
 struct PaneOptics {
   double reflected = 0.0, passed = 0.0;

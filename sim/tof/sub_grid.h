@@ -21,8 +21,8 @@ struct SubGrid {
   std::vector<std::size_t> row_begin, in_row;  // of the index
 };
 
-// [sub-ray] 1: all sub-rays up to reach away in x and y meet the same plane, or nothing, as it does; 0 near the
-// picture's edge.
+// [sub-ray] 1: all sub-rays up to reach away in x and y meet the same plane, or nothing, as it does; 0 near the picture's
+// edge.
 std::vector<std::uint8_t> CalmSubRays(const SubGrid& grid, std::span<const RayHit> hits, int reach);
 
 // Range of a face along a unit direction.

@@ -84,8 +84,8 @@ DepthFrame TofCamera::Expose(const TofView& view, const DepthSettings& settings,
   return frame;
 }
 
-// First-order: var(phase) = (I^2 var(Q) + Q^2 var(I)) / (I^2 + Q^2)^2, through the slope of the correction; ranges of
-// two frequencies by their weights.
+// First-order: var(phase) = (I^2 var(Q) + Q^2 var(I)) / (I^2 + Q^2)^2, through the slope of the correction; ranges of two
+// frequencies by their weights.
 double TofCamera::Impl::Sigma_m(const std::vector<LightImages>& images, std::size_t pixel,
                                 const DepthSettings& settings) const {
   TofEffects mean = effects;

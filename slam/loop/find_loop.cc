@@ -65,8 +65,7 @@ std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<cons
   Vector6d sigma;
   sigma << config.start_sigma_m, config.start_sigma_m, 0.01, 0.005, 0.005, config.start_sigma_rad;
   prior.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
-  // Coarse first: a point finds its surface up to a voxel's edge away, whatever the walls' distance the estimate is
-  // off.
+  // Coarse first: a point finds its surface up to a voxel's edge away, whatever the walls' distance the estimate is off.
   VoxelMap coarse({.voxel_m = kCoarse_m}), fine({.voxel_m = kFine_m});
   AddTo(fine, coarse, keyframes, former);
   const IcpConfig wide{.iterations_max = kIterations,

@@ -67,8 +67,8 @@ struct Loop {
   double overlap = 0.0;                    // share of points near the former map
 };
 
-// points_base: what was seen of late, in the present frame. Nothing: no key frame of an earlier visit sees the place,
-// or the shapes do not fit, or do not tell where along them the car is.
+// points_base: what was seen of late, in the present frame. Nothing: no key frame of an earlier visit sees the place, or
+// the shapes do not fit, or do not tell where along them the car is.
 std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
                              const Pose& T_map_base, double path_m, const LoopConfig& config);
 

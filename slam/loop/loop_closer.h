@@ -16,10 +16,10 @@ class LoopCloser {
  public:
   explicit LoopCloser(const LoopConfig& config) : config_(config) {}
 
-  // Looks for a former visit from the present pose. points_base: seen of late, in the present frame. Where a loop of
-  // the newest key frame is found, the poses of all key frames that agree best with the ways between them, their
-  // headings and the loops; planar: height and tilt stay, and the first pose. A place recognised where no new key frame
-  // was taken needs no loop; one that strains the ways and headings more than their errors allow is none.
+  // Looks for a former visit from the present pose. points_base: seen of late, in the present frame. Where a loop of the
+  // newest key frame is found, the poses of all key frames that agree best with the ways between them, their headings
+  // and the loops; planar: height and tilt stay, and the first pose. A place recognised where no new key frame was taken
+  // needs no loop; one that strains the ways and headings more than their errors allow is none.
   std::optional<std::vector<Pose>> Search(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
                                           const Pose& T_map_base, double path_m);
   bool IsDue(double path_m) const {

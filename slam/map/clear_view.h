@@ -18,8 +18,8 @@ class ClearView {
   };
 
   ClearView() = default;  // saw nothing
-  // Of all pixels: those with a point, the free, saturated and unknown ones. Rays 60 deg or more off the level
-  // direction in which they look on the whole are left out, and what is not finite.
+  // Of all pixels: those with a point, the free, saturated and unknown ones. Rays 60 deg or more off the level direction in which
+  // they look on the whole are left out, and what is not finite.
   explicit ClearView(const Observation& observation);
 
   // p_view: in the frame of the view, with its origin in the camera, x level along the view, z up as the base's.

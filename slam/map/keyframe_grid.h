@@ -1,12 +1,10 @@
-// The occupancy grid of all key frames. A closed loop moves key frames by the hundred, and to enter them all again
-// takes longer than one frame may: so a second grid is made beside the first, with an equal share of the key frames at
-// every frame, and replaces it when it is whole. Counted in frames, not in time: a run gives the same bits on any
-// machine.
+// The occupancy grid of all key frames. A closed loop moves key frames by the hundred, and to enter them all again takes
+// longer than one frame may: so a second grid is made beside the first, with an equal share of the key frames at every
+// frame, and replaces it when it is whole. Counted in frames, not in time: a run gives the same bits on any machine.
 //
 //   frame        n                n+1 ... n+kFrames-1       n+kFrames
 //   key frames   moved: Renew()   enter the second grid     all in it
-//   readers see  the first grid, key frames where they were believed before, new ones where they are  |  the second
-//   grid
+//   readers see  the first grid, key frames where they were believed before, new ones where they are  |  the second grid
 #pragma once
 
 #include <cstddef>

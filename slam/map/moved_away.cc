@@ -20,8 +20,7 @@ constexpr float kReach_m = 0.1f;  // of its middle, before and behind: from one 
 
 enum class Look { kNone, kThere, kThrough };
 
-// Of the angle between a surface and the ray to it, from the camera. Without a normal: steep enough, unless it may be
-// floor.
+// Of the angle between a surface and the ray to it, from the camera. Without a normal: steep enough, unless it may be floor.
 float CosineOf(const Eigen::Vector3f& normal, const Eigen::Vector3f& ray, const Eigen::Vector3f& point_map) {
   if (normal.isZero()) return point_map.z() < kFloor_m ? 0.0f : kAslantDark;
   return std::abs(normal.dot(ray)) / ray.norm();
@@ -34,8 +33,8 @@ Look LookAt(const ClearView::Reach& reach, float range_m, float cosine) {
   return !reach.dark && reach.length_m >= range_m - margin_m ? Look::kThere : Look::kNone;
 }
 
-// Evidence that something is there, as an occupancy grid's log odds: two for each sight of it, one less for each
-// through it, bounded so that three of these outweigh whatever was before.
+// Evidence that something is there, as an occupancy grid's log odds: two for each sight of it, one less for each through it,
+// bounded so that three of these outweigh whatever was before.
 int Weighed(int evidence, Look look) {
   if (look == Look::kThere) return std::min(evidence + 2, kMost);
   if (look == Look::kThrough) return std::max(evidence - 1, kLeast);
@@ -123,8 +122,8 @@ class Evidence {
   std::vector<int> weighed_;  // in the order of the blocks' voxels
 };
 
-// The room that the car passes through, off the floor. Its nose may go under something; what comes to its middle would
-// have met the camera's mast.
+// The room that the car passes through, off the floor. Its nose may go under something; what comes to its middle would have
+// met the camera's mast.
 Eigen::AlignedBox3f MiddleOf(const Footprint& footprint) {
   const auto half_m = static_cast<float>(footprint.half_width_m) - kBody_m;
   return {Eigen::Vector3f(-kReach_m, -half_m, kFloor_m),

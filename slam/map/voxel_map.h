@@ -55,13 +55,12 @@ class VoxelMap {
 
   // path_m: length driven so far, remembered as the voxels' last_seen_m.
   void Insert(std::span<const Point> points_base, const Pose& T_map_base, double path_m);
-  // As one Insert after the other, with the same bits, but a voxel's surface is computed only once: after the last
-  // frame that has points in it.
+  // As one Insert after the other, with the same bits, but a voxel's surface is computed only once: after the last frame
+  // that has points in it.
   void InsertAll(std::span<const PlacedPoints> frames, double path_m);
-  // Colours from the points that have one, for the voxels there are: the best views decide. One weighs (cos(incidence)
-  // / distance^2)^2, which is the square of how many pixels there are to an area, so that few frames from near and in
-  // front outweigh many from far and aslant. A voxel that is no plane counts as facing. camera_base: where the rays
-  // begin.
+  // Colours from the points that have one, for the voxels there are: the best views decide. One weighs (cos(incidence) /
+  // distance^2)^2, which is the square of how many pixels there are to an area, so that few frames from near and in front
+  // outweigh many from far and aslant. A voxel that is no plane counts as facing. camera_base: where the rays begin.
   void Paint(std::span<const Point> points_base, const Eigen::Vector3f& camera_base, const Pose& T_map_base);
   // Forgets voxels last seen before path_m.
   void ForgetBefore(double path_m);

@@ -33,8 +33,7 @@ void Visit(Visitor& v, IcpConfig& c) {
   v("inlier_share_min", c.inlier_share_min, {0.0, 1.0});
 }
 
-// Where the pose is believed to be; information over (translation, rotation) in the base frame. Zero: no belief, only a
-// guess.
+// Where the pose is believed to be; information over (translation, rotation) in the base frame. Zero: no belief, only a guess.
 struct PosePrior {
   Pose T_map_base = Pose::Identity();
   Matrix6d information = Matrix6d::Zero();
@@ -47,14 +46,13 @@ struct RegisterResult {
   double inlier_share = 0.0;  // of the points that meet the map: what is seen for the first time says nothing
   double rms_m = 0.0;         // of the inliers' point-to-plane distances
   int iterations = 0;
-  // What the pairs alone, without the prior, do not hold, in the base frame: along these the pose is the prior's. All
-  // six where there are too few pairs.
+  // What the pairs alone, without the prior, do not hold, in the base frame: along these the pose is the prior's. All six
+  // where there are too few pairs.
   Undetermined undetermined{};
   bool converged = false;  // false: the pose is the last iterate and not to be trusted
 };
 
-// origin_base: where the rays of the points began. Starts at the prior's pose. Too few points or an empty map: not
-// converged.
+// origin_base: where the rays of the points began. Starts at the prior's pose. Too few points or an empty map: not converged.
 RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3f& origin_base, const VoxelMap& map,
                         const PosePrior& prior, const IcpConfig& config);
 

@@ -22,8 +22,8 @@ DriveState At(double t_s, double battery_v, double current_a = 0.0, std::int64_t
   return {.stamp = FromSeconds(t_s), .encoder_counts = counts, .current_a = current_a, .battery_v = battery_v};
 }
 
-// A battery of 12 V and 0.1 ohm that feeds the motor of CarWithMotor() through a bridge, solved by hand the other way
-// round: from the duty to what the state says.
+// A battery of 12 V and 0.1 ohm that feeds the motor of CarWithMotor() through a bridge, solved by hand the other way round:
+// from the duty to what the state says.
 TEST(RestVoltage, IsThatOfTheBatteryBeforeItsResistance) {
   const double emf_v = 100.0 * 0.05;
   for (const double duty : {-0.8, 0.0, 0.3, 0.6, 1.0}) {

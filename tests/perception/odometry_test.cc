@@ -14,8 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Path of each wheel on a circle about a point on the rear axle's line, from plane geometry; mean over the rear
-// middle's.
+// Path of each wheel on a circle about a point on the rear axle's line, from plane geometry; mean over the rear middle's.
 double MeanOfFourWheels(double steering_rad) {
   const double R = 0.33 / std::tan(steering_rad);
   double sum = 0.0;

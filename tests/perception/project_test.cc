@@ -94,8 +94,7 @@ TEST(Project, KeepsSaturatedPixelsAsDirections) {
   EXPECT_TRUE(observation.saturated_base[0].isApprox(Eigen::Vector3f::UnitX(), 1e-6f));
 }
 
-// Figures computed by hand from c / (4 sqrt2 pi f) = 0.844 m at 20 MHz and sqrt(N + 2 200^2) / (0.45 N): albedo 0.5, 1
-// ms.
+// Figures computed by hand from c / (4 sqrt2 pi f) = 0.844 m at 20 MHz and sqrt(N + 2 200^2) / (0.45 N): albedo 0.5, 1 ms.
 TEST(RangeSigma, GivesTheHandComputedMillimetres) {
   for (const auto& [distance_m, sigma_mm] :
        {std::pair(1.0, 1.9), {2.0, 4.3}, {3.0, 7.4}, {4.0, 11.3}, {5.0, 16.2}, {7.0, 29.1}}) {
@@ -160,8 +159,8 @@ struct ColorCameraAbove {
   Pose T_color_base = Pose(Eigen::Translation3d(0.0, 0.07, 0.0));
 };
 
-// A board at 1 m covers what lies above the axis, a wall stands at 3 m: from 7 cm higher up the board's lower edge
-// hides the wall down to 3 x 0.07 - 0.07 = 0.14 m below the axis.
+// A board at 1 m covers what lies above the axis, a wall stands at 3 m: from 7 cm higher up the board's lower edge hides the
+// wall down to 3 x 0.07 - 0.07 = 0.14 m below the axis.
 TEST(Fuse, PaintsNoSurfaceThatAnotherHidesFromTheColourCamera) {
   const ColorCameraAbove above;
   std::vector<Point> points = SeenBy64x48([](double, double down) { return down < 0.0 ? 1.0 : 3.0; });

@@ -126,8 +126,8 @@ TEST(CorridorObstacle, StopsBeforeTheBoxStaysAndDrivesOn) {
   EXPECT_GE(*m.obstacle_gap_m, 0.3);
   EXPECT_GE(*m.obstacle_stop_s, 5.0);
   EXPECT_GE(*m.distance_m, 9.0);  // about 5.5 m until it stands; the rest after the box has gone
-  // The box's front covers 125 voxels of 4 cm (0.4 x 0.5 m), 64 of them where the camera still looks from 0.7 m away.
-  // Low down, and at the edges, nothing ever looked through it, nor drove.
+  // The box's front covers 125 voxels of 4 cm (0.4 x 0.5 m), 64 of them where the camera still looks from 0.7 m away. Low
+  // down, and at the edges, nothing ever looked through it, nor drove.
   const auto left_in = [&](float half_width_m, float low_m) {
     return MapPointsIn(folder.path() / "a/map.ply",
                        {Eigen::Vector3f(5.4f, -half_width_m, low_m), Eigen::Vector3f(7.0f, half_width_m, 0.5f)});

@@ -17,8 +17,8 @@ constexpr double kCamera_m = 0.35;  // height
 constexpr double kFar_m = 6.0;      // beyond it nothing returns...
 constexpr double kFree_m = 4.0;     // ...and so far the way is free then
 
-// Along a ray from outside to the box; infinite: past it. Slabs, one axis after the other. Plain numbers, since it is
-// asked a million times, under the sanitizers too.
+// Along a ray from outside to the box; infinite: past it. Slabs, one axis after the other. Plain numbers, since it is asked
+// a million times, under the sanitizers too.
 double RangeTo(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   const double *low = box.min().data(), *high = box.max().data(), *from = origin.data(), *along = direction.data();
   double enter = 0.0, leave = HUGE_VAL;
@@ -153,8 +153,8 @@ TEST(MovedAway, NeedsRaysThatTellOfTheDark) {
   EXPECT_GE(told.rest_left, 0.99 * told.rest);
 }
 
-// The floor from 3.4 m on, seen from near at first, then as nothing but dark pixels: each implies that it is free for
-// longer than the floor is away, since the floor sends so little back.
+// The floor from 3.4 m on, seen from near at first, then as nothing but dark pixels: each implies that it is free for longer
+// than the floor is away, since the floor sends so little back.
 TEST(MovedAway, KeepsAFloorThatIsTooDarkFromFarAway) {
   VoxelMap map({.voxel_m = 0.04});
   std::vector<Keyframe> keyframes;
@@ -252,8 +252,7 @@ TEST(MovedAway, AsksSightsWhereTheyWereAndInTheOrderOfTime) {
   EXPECT_LE(differ, 3);
 }
 
-// Points on a line across the way, 2 cm apart and 12 cm above the floor, and one on the floor; the car drives over
-// them.
+// Points on a line across the way, 2 cm apart and 12 cm above the floor, and one on the floor; the car drives over them.
 TEST(MovedAway, TakesOutWhatStoodWhereTheCarDrove) {
   const Pose T_map_way = FromXyYaw(2.0, -1.0, 2.0);
   std::vector<Point> line;
@@ -283,8 +282,7 @@ TEST(MovedAway, TakesOutWhatStoodWhereTheCarDrove) {
   EXPECT_EQ(std::ranges::count_if(left, [](double y) { return std::abs(y) > 0.105; }), 11);
 }
 
-// Stands before the box, which stays or goes: no new key frame is taken, and the sights are few, however long it
-// stands.
+// Stands before the box, which stays or goes: no new key frame is taken, and the sights are few, however long it stands.
 TEST(Slam, TakesOutOfItsMapWhatGoesAwayWhileTheCarStands) {
   for (const bool goes : {false, true}) {
     Slam slam({});

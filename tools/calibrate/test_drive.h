@@ -12,9 +12,9 @@
 
 namespace merlin {
 
-// What an operator with chalk and tape would measure of this car and write down: two straight drives, and circles to
-// both sides, narrow and wide, each angle reached from below and from above. The tape errs by its sigma, by chance
-// keyed by the seed.
+// What an operator with chalk and tape would measure of this car and write down: two straight drives, and circles to both
+// sides, narrow and wide, each angle reached from below and from above. The tape errs by its sigma, by chance keyed by the
+// seed.
 MeasuredDrives DriveAndMeasure(const sim::WorldOptions& twin);
 
 struct Manoeuvre {
@@ -24,8 +24,7 @@ struct Manoeuvre {
   double error_after_m = 0.0;   // and as it was calibrated
 };
 
-// Circles and squares to both sides, of 2 m and more, driven by the calibrated odometry: how far off each odometry
-// ends.
+// Circles and squares to both sides, of 2 m and more, driven by the calibrated odometry: how far off each odometry ends.
 std::vector<Manoeuvre> DriveManoeuvres(const sim::WorldOptions& twin, const CarCalibration& calibration);
 
 // The open floor with a scenario's car on it.

@@ -73,8 +73,7 @@ class Station {
   std::optional<RawTerminal> terminal_;
 };
 
-// What the operator sees: five times a second on a terminal, once a second elsewhere, and at once when the driver
-// changes.
+// What the operator sees: five times a second on a terminal, once a second elsewhere, and at once when the driver changes.
 class StatusLine {
  public:
   void Show(Time now, const HandStatus& status) {

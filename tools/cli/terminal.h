@@ -1,5 +1,4 @@
-// Text that fits the terminal, counted in columns: an umlaut takes one, a Chinese character two, an accent by itself
-// none.
+// Text that fits the terminal, counted in columns: an umlaut takes one, a Chinese character two, an accent by itself none.
 #pragma once
 
 #include <string>
@@ -8,14 +7,13 @@
 
 namespace merlin::cli {
 
-// The terminal's width now: it may be resized at any time. COLUMNS where the terminal does not tell, else 80; 0 where
-// fd is no terminal.
+// The terminal's width now: it may be resized at any time. COLUMNS where the terminal does not tell, else 80; 0 where fd
+// is no terminal.
 int TerminalColumns(int fd);
 
 int DisplayColumns(std::string_view text);
 
-// As much of the text as fits into so many columns. In place of control characters and bytes that are no UTF-8 stands
-// '?'.
+// As much of the text as fits into so many columns. In place of control characters and bytes that are no UTF-8 stands '?'.
 std::string Cut(std::string_view text, int columns);
 
 // The text in lines of at most so many columns, broken at blanks; a longer word keeps a line of its own. 0: one line.

@@ -1,5 +1,5 @@
-// How fast the stack finds the pose: registration alone, a whole frame from filter to pose, and the frames of a lap
-// that closes a loop.
+// How fast the stack finds the pose: registration alone, a whole frame from filter to pose, and the frames of a lap that
+// closes a loop.
 #pragma once
 
 #include <atomic>

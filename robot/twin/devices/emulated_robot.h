@@ -1,6 +1,6 @@
-// The twin behind the real protocols: a running car whose microcontroller and 3DM speak over pseudo-terminals, whose
-// ToF camera is found by its maker's library behind a socket, and whose colour camera is a stream on this machine.
-// Drivers cannot tell it from a car. Paced by a real clock: its runs repeat in what they do, not in every bit.
+// The twin behind the real protocols: a running car whose microcontroller and 3DM speak over pseudo-terminals, whose ToF
+// camera is found by its maker's library behind a socket, and whose colour camera is a stream on this machine. Drivers
+// cannot tell it from a car. Paced by a real clock: its runs repeat in what they do, not in every bit.
 #pragma once
 
 #include <atomic>
@@ -28,9 +28,9 @@ class EmulatedRobot {
   static constexpr int kDriveBaud = 57600;
   static constexpr double kStreamLatency_s = 0.006;  // measured: coding, network and decoding of a picture
 
-  // sockets: a folder for the ToF camera's socket. The world begins to run when Start is called, and follows clock,
-  // which outlives this and may be asked from any thread. Throws as Twin does, and MachineError where a port or socket
-  // cannot be had.
+  // sockets: a folder for the ToF camera's socket. The world begins to run when Start is called, and follows clock, which
+  // outlives this and may be asked from any thread. Throws as Twin does, and MachineError where a port or socket cannot
+  // be had.
   EmulatedRobot(const TwinOptions& options, const std::filesystem::path& sockets, const Clock& clock);
   ~EmulatedRobot();
   EmulatedRobot(const EmulatedRobot&) = delete;

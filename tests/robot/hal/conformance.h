@@ -1,6 +1,6 @@
-// The conformance suite of the hardware abstraction layer: what every plug promises, tested through the interfaces
-// alone. A plug runs it by instantiating HalConformance with a factory for a car that stands at the start of a
-// straight, free way of at least 6 m, a wall square ahead within the depth camera's unambiguous range.
+// The conformance suite of the hardware abstraction layer: what every plug promises, tested through the interfaces alone.
+// A plug runs it by instantiating HalConformance with a factory for a car that stands at the start of a straight, free
+// way of at least 6 m, a wall square ahead within the depth camera's unambiguous range.
 #pragma once
 
 #include <gtest/gtest.h>

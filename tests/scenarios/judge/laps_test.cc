@@ -133,8 +133,7 @@ TEST(CountLaps, StartsAnewWhereThePathRunsOverTheCentre) {
 }
 
 TEST(CountLaps, AsksTheCentreOfTheAreaWhereverTheRoomLies) {
-  // A trapezium far from the origin, its corners clockwise and one of them twice: the mean of its corners lies beside
-  // it.
+  // A trapezium far from the origin, its corners clockwise and one of them twice: the mean of its corners lies beside it.
   const Outline room{{1000, 500}, {1000, 500}, {1000, 510}, {1004, 510}, {1030, 500}};
   // Its centre by hand: a square part of 4 x 10 m and a triangle of 26 x 10 m.
   const Eigen::Vector2d centre((40 * 1002.0 + 130 * (1004 + 26 / 3.0)) / 170,

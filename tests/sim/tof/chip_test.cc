@@ -239,8 +239,7 @@ TEST(TofChip, HasAHotPixelAlwaysFullWhetherOrNotItSuppressesBackground) {
 }
 
 TEST(TofChip, CancelsGainAndOffsetOfTheTapsForAPixelAtRest) {
-  // A (1 + g) - B (1 - g) = D + g N: the same in all four, gone from D_0 - D_2 and D_3 - D_1; so is the offset, at
-  // once.
+  // A (1 + g) - B (1 - g) = D + g N: the same in all four, gone from D_0 - D_2 and D_3 - D_1; so is the offset, at once.
   const Chip chip(Pmd3k(), {}, kIdealTof);
   for (const double phase_rad : {0.0, 0.7, 3.0, 6.2}) {
     const Light light{.signal_e = 2e5, .phase_rad = phase_rad, .background_e = 3e5};

@@ -76,8 +76,7 @@ TEST(TofNoise, FollowsTheLawOverFiveDecadesOfSignal) {
   }
 }
 
-// Predicted sigma [mm] for three cameras, of walls 0.5, 1, 2, 3, 4, 5, 7 m away, and the value of half their last
-// digit.
+// Predicted sigma [mm] for three cameras, of walls 0.5, 1, 2, 3, 4, 5, 7 m away, and the value of half their last digit.
 constexpr double kSaturated_mm = -1.0;
 constexpr double kRanges_m[7] = {0.5, 1, 2, 3, 4, 5, 7};
 struct Prediction {

@@ -144,8 +144,8 @@ TEST(TofTruth, PredictsTheSpreadOfRepeatedFrames) {
   EXPECT_NEAR(ratio_sum / pixels, 1.0, 0.03);
 }
 
-// 95th percentile of |range - truth| (wrapped the shortest way) over the pixels that a user would use, for the cameras
-// that look towards these yaws from the room's middle.
+// 95th percentile of |range - truth| (wrapped the shortest way) over the pixels that a user would use, for the cameras that
+// look towards these yaws from the room's middle.
 double ErrorP95_m(RoomView& room, const std::vector<double>& yaws_deg) {
   const DepthCameraSheet sheet = ReadDepthCameraSheet(kModels / "cameras/pmd_3k_s.yaml");
   const DepthCameraErrors errors = ReadDepthCameraErrors(kModels / "cameras/pmd_3k_s.yaml");

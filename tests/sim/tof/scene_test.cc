@@ -84,8 +84,8 @@ TEST(TofMotion, ErrsAxiallyByHalfTheWayOfASubFrameTimesCos2Phi) {
   }
 }
 
-// Near by, the light of the four sub-frames differs, too: the four taps written out, with N ~ 1 / d^2 and the mean over
-// the integration.
+// Near by, the light of the four sub-frames differs, too: the four taps written out, with N ~ 1 / d^2 and the mean over the
+// integration.
 TEST(TofMotion, AddsTheChangeOfLightNearBy) {
   const DepthSettings settings{.integration_s = 4e-3};
   DepthCameraSheet sheet = Sheet3kS();
