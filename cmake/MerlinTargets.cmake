@@ -63,9 +63,16 @@ function(merlin_headers result)
   set(${result} ${name} PARENT_SCOPE)
 endfunction()
 
+# What runs once a run, or for a test, is optimised a little only: -O3 takes the compiler half as long again.
+set(merlin_cool)
+if(CMAKE_BUILD_TYPE STREQUAL Release)
+  set(merlin_cool -O1)
+endif()
+
 # merlin_library(name [HOT] [NUMERIC] SOURCES ... PUBLIC libs... PRIVATE libs...): target merlin_<name>, alias merlin::<name>.
-# Without sources it is an interface library. HOT: optimised a little under the sanitizers too, where tests of it would
-# otherwise take minutes. NUMERIC: mostly Eigen's arithmetic, see MERLIN_SANITIZE.
+# Without sources it is an interface library. HOT: has work for every frame or step. It is optimised as the build type has
+# it, and a little under the sanitizers too, where tests of it would otherwise take minutes. NUMERIC: mostly Eigen's
+# arithmetic, see MERLIN_SANITIZE.
 function(merlin_library name)
   cmake_parse_arguments(arg "HOT;NUMERIC" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   if(NOT arg_SOURCES)
@@ -74,9 +81,12 @@ function(merlin_library name)
     target_link_libraries(merlin_${name} INTERFACE merlin::options ${arg_PUBLIC})
     return()
   endif()
-  set(options)
-  if(arg_HOT AND merlin_sanitized)
-    list(APPEND options -O1)
+  set(options ${merlin_cool})
+  if(arg_HOT)
+    set(options)
+    if(merlin_sanitized)
+      set(options -O1)
+    endif()
   endif()
   if(MERLIN_SANITIZE STREQUAL address AND NOT arg_NUMERIC)
     list(APPEND options -fsanitize=undefined)
