@@ -63,7 +63,7 @@ run_fuzzers() {
   for target in "$folder"/fuzz_*; do
     [[ -x $target && -f $target && $target != *_planted ]] || continue
     echo "$target"
-  done | xargs -P "$(nproc)" -I{} bash -c '"$1" -max_total_time=60 -print_final_stats=1 >"$1.log" 2>&1 </dev/null || echo "$1" >"$1.failed"' _ {}
+  done | xargs -P "$(nproc)" -I{} bash -c '"$1" -max_total_time=60 -print_final_stats=1 -artifact_prefix="$1-" >"$1.log" 2>&1 </dev/null || echo "$1" >"$1.failed"' _ {}
   for target in "$folder"/fuzz_*; do
     [[ -x $target && -f $target ]] || continue
     if [[ $target = *_planted ]]; then
