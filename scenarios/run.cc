@@ -285,6 +285,7 @@ RunReport RunEmulated(const RunOptions& options, const CarDescription& car, cons
   Session session(options, car, stop);
   const SocketFolder sockets;
   RealClock clock({}, Time::max());
+  std::optional<Truth> truth;  // before the robot, whose thread watches it until its end
   std::unique_ptr<EmulatedRobot> emulated;
   HardwareCameras cameras;
   std::string note;
@@ -293,7 +294,6 @@ RunReport RunEmulated(const RunOptions& options, const CarDescription& car, cons
     cameras = CamerasOf(with);
   });
   const auto locked = [&](const auto& use) { return emulated->With(use); };
-  std::optional<Truth> truth;
   std::string gl_name;
   locked([&](Twin& twin) {
     RequirePlan(options, twin.world());
