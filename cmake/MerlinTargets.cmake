@@ -16,15 +16,13 @@ target_compile_options(merlin_options INTERFACE -Wall -Wextra -Wpedantic -Wshado
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_options(merlin_options INTERFACE -march=x86-64-v3)
 endif()
-# GCC sees reads beyond Eigen's vectors of three that its own vectoriser would make, were they longer. GCC 12 sees an overlap
-# in "literal" + std::string that is none (GCC bug 105651, mended in 13), and strings of a compile-time size overflow that do
-# not (105329 and its kin); GCC 14 sees an empty std::optional of a std::variant destroy what it does not hold.
+# GCC sees reads beyond Eigen's vectors of three that its own vectoriser would make, were they longer, and takes what is set in
+# one of several branches (or is an empty std::optional) for uninitialised. GCC 12 sees an overlap in "literal" + std::string
+# that is none (GCC bug 105651, mended in 13), and strings of a compile-time size overflow that do not (105329 and its kin).
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  target_compile_options(merlin_options INTERFACE -Wno-array-bounds)
+  target_compile_options(merlin_options INTERFACE -Wno-array-bounds -Wno-maybe-uninitialized)
   if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(merlin_options INTERFACE -Wno-restrict -Wno-stringop-overflow)
-  else()
-    target_compile_options(merlin_options INTERFACE -Wno-maybe-uninitialized)
   endif()
 endif()
 # Of a file that a unity build includes, GCC takes the unnamed namespace for one of a header.
@@ -41,10 +39,6 @@ if(MERLIN_SANITIZE)
   target_link_options(merlin_options INTERFACE -fsanitize=${MERLIN_SANITIZE})
   if(MERLIN_SANITIZE MATCHES address)
     target_link_options(merlin_options INTERFACE -fsanitize=undefined)
-  endif()
-  # Sanitized code confuses GCC's uninitialised-value analysis (its manual says so under -fsanitize), in <regex> for one.
-  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    target_compile_options(merlin_options INTERFACE -Wno-maybe-uninitialized)
   endif()
 endif()
 add_library(merlin::options ALIAS merlin_options)

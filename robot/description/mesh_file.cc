@@ -58,6 +58,22 @@ Eigen::Affine3d ToAffine(const aiMatrix4x4& m) {
   return result;
 }
 
+// Vertices that no triangle names would count for a hull: single points, and what a count that lies made assimp read.
+CarMesh WithoutLooseVertices(const CarMesh& mesh) {
+  std::vector<int> number(mesh.vertices.size(), -1);
+  for (const Eigen::Vector3i& corners : mesh.triangles)
+    for (const int corner : corners) number[static_cast<std::size_t>(corner)] = 0;
+  CarMesh kept{.vertices = {}, .triangles = mesh.triangles, .rgba = mesh.rgba};
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] < 0) continue;
+    number[i] = static_cast<int>(kept.vertices.size());
+    kept.vertices.push_back(mesh.vertices[i]);
+  }
+  for (Eigen::Vector3i& corners : kept.triangles)
+    for (int& corner : corners) corner = number[static_cast<std::size_t>(corner)];
+  return kept;
+}
+
 class Collector {
  public:
   Collector(const std::filesystem::path& file, const aiScene& scene) : file_(file.string()), scene_(scene) {}
@@ -70,7 +86,7 @@ class Collector {
   std::vector<CarMesh> Parts() const {
     std::vector<CarMesh> parts;
     for (const auto& [material, mesh] : parts_)
-      if (!mesh.triangles.empty()) parts.push_back(mesh);
+      if (!mesh.triangles.empty()) parts.push_back(WithoutLooseVertices(mesh));
     return parts;
   }
 

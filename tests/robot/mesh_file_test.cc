@@ -134,11 +134,21 @@ TEST_F(MeshFile, RefusesAMeshThatIsCutOff) {
 TEST_F(MeshFile, RefusesCountsThatLie) {
   for (const std::uint32_t claimed : {13u, 1000000u, 0xffffffffu})
     ExpectRefused("lie.stl", mesh_text::StlBinary({}, claimed), "");
-  for (const std::string claimed : {"9", "4000000000", "-1", "99999999999999999999"})
+  for (const std::string claimed : {"4000000000", "-1", "99999999999999999999"})
     ExpectRefused("lie.glb", mesh_text::Glb({.claimed = claimed}), "");
   for (const std::string claimed : {"25", "4000000000", "-1"})
     ExpectRefused("lie.dae", mesh_text::Dae({.claimed = claimed}), "");
   ExpectRefused("lie.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4000000000\n", "");
+}
+
+// assimp 5.2 refuses a vertex more than the file has room for; 5.4 reads one from the bytes behind, which no triangle names.
+TEST_F(MeshFile, TakesNoVertexThatOnlyItsCountTellsOf) {
+  const std::string lie = mesh_text::Glb({.box = {1, 3, 2}, .claimed = "9"});
+  if (ErrorOf("lie.glb", lie).empty()) ExpectBox(Read("lie.glb", lie), {1, 2, 3});
+}
+
+TEST_F(MeshFile, LeavesOutVerticesThatNoTriangleNames) {
+  ExpectBox(Read("loose.obj", mesh_text::Obj({1, 2, 3}) + "v 9 9 9\nv -9 9 9\nf 9 10 9\n"), {1, 2, 3});  // without area
 }
 
 TEST_F(MeshFile, RefusesNoTriangles) {
