@@ -8,8 +8,8 @@
 
 #include "autonomy/avoid.h"
 #include "perception/observation.h"
+#include "robot/base/config.h"
 #include "robot/types/car.h"
-#include "robot/types/config.h"
 #include "robot/types/measurements.h"
 
 namespace merlin {

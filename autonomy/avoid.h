@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "perception/observation.h"
-#include "robot/types/config.h"
+#include "robot/base/config.h"
 #include "robot/types/footprint.h"
 
 namespace merlin {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "robot/types/config.h"
+#include "robot/base/config.h"
 #include "robot/types/se3.h"
 #include "slam/map/occupancy_grid.h"
 #include "slam/map/voxel_map.h"

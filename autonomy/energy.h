@@ -5,8 +5,8 @@
 
 #include <optional>
 
+#include "robot/base/config.h"
 #include "robot/types/car.h"
-#include "robot/types/config.h"
 #include "robot/types/measurements.h"
 
 namespace merlin {

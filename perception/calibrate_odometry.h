@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "robot/base/config.h"
 #include "robot/types/car_calibration.h"
-#include "robot/types/config.h"
 
 namespace merlin {
 

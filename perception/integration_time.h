@@ -4,7 +4,7 @@
 // deviation from a target.
 #pragma once
 
-#include "robot/types/config.h"
+#include "robot/base/config.h"
 #include "robot/types/depth_camera.h"
 
 namespace merlin {

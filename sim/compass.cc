@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/random.h"
+#include "robot/base/random.h"
 
 namespace merlin::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "robot/types/config.h"
+#include "robot/base/config.h"
 #include "robot/types/depth_camera.h"
 
 namespace merlin {

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <csignal>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 namespace {

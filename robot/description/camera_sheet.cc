@@ -9,10 +9,10 @@
 #include <span>
 #include <string_view>
 
+#include "robot/base/config.h"
+#include "robot/base/error.h"
+#include "robot/base/nearest_name.h"
 #include "robot/description/description.h"
-#include "robot/types/config.h"
-#include "robot/types/error.h"
-#include "robot/types/nearest_name.h"
 
 namespace merlin {
 namespace {

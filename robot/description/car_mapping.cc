@@ -7,10 +7,10 @@
 #include <set>
 #include <vector>
 
+#include "robot/base/error.h"
+#include "robot/base/fault_list.h"
+#include "robot/base/nearest_name.h"
 #include "robot/description/drivetrain_numbers.h"
-#include "robot/types/error.h"
-#include "robot/types/fault_list.h"
-#include "robot/types/nearest_name.h"
 
 namespace merlin {
 namespace {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <tuple>
 
+#include "robot/base/error.h"
 #include "robot/description/car_geometry.h"
 #include "robot/description/car_mapping.h"
 #include "robot/description/description.h"
@@ -15,7 +16,6 @@
 #include "robot/description/mesh_path.h"
 #include "robot/description/urdf_check.h"
 #include "robot/description/urdf_source.h"
-#include "robot/types/error.h"
 
 namespace merlin {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "robot/base/error.h"
 #include "robot/types/car.h"
-#include "robot/types/error.h"
 
 namespace merlin {
 

@@ -11,8 +11,8 @@
 #include <map>
 #include <string_view>
 
+#include "robot/base/error.h"
 #include "robot/description/apart.h"
-#include "robot/types/error.h"
 
 namespace merlin {
 namespace {

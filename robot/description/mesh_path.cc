@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "robot/base/nearest_name.h"
 #include "robot/description/urdf_schema.h"
-#include "robot/types/nearest_name.h"
 
 namespace merlin {
 namespace {

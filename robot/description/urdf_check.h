@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
+#include "robot/base/fault_list.h"
 #include "robot/description/urdf_source.h"
-#include "robot/types/fault_list.h"
 
 namespace merlin {
 

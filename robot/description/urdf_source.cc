@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "robot/base/error.h"
 #include "robot/description/urdf_schema.h"
-#include "robot/types/error.h"
 
 namespace merlin {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <thread>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 namespace {

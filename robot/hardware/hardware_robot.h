@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "robot/hal/hal.h"
-#include "robot/hardware/color_capture.h"
-#include "robot/hardware/compass_3dm_driver.h"
-#include "robot/hardware/microcontroller_drive.h"
+#include "robot/hardware/color/color_capture.h"
+#include "robot/hardware/compass/compass_3dm_driver.h"
+#include "robot/hardware/depth/tof_camera.h"
+#include "robot/hardware/drive/microcontroller_drive.h"
 #include "robot/hardware/real_clock.h"
-#include "robot/hardware/tof_camera.h"
 
 namespace merlin {
 

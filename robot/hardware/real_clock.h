@@ -5,8 +5,8 @@
 #include <functional>
 #include <memory>
 
+#include "robot/base/config.h"
 #include "robot/hal/clock.h"
-#include "robot/types/config.h"
 
 namespace merlin {
 

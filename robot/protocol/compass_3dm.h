@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "robot/base/config.h"
 #include "robot/protocol/bytes.h"
-#include "robot/types/config.h"
 #include "robot/types/time.h"
 
 namespace merlin::compass_3dm {

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "robot/base/worker.h"
 #include "robot/twin/outbox.h"
-#include "robot/twin/worker.h"
-#include "sim/color_camera.h"
-#include "sim/ray_scene.h"
+#include "sim/color/color_camera.h"
+#include "sim/rays/ray_scene.h"
 
 namespace merlin {
 namespace {

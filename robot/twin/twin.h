@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "robot/hal/hal.h"
+#include "sim/color/renderer.h"
 #include "sim/compass.h"
-#include "sim/materials.h"
-#include "sim/renderer.h"
 #include "sim/tof/tof_camera.h"
-#include "sim/world.h"
+#include "sim/world/materials.h"
+#include "sim/world/world.h"
 
 namespace merlin {
 

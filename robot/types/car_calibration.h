@@ -1,8 +1,8 @@
 // What drives on a measured course tell of a car better than its drawing does.
 #pragma once
 
+#include "robot/base/config.h"
 #include "robot/types/car.h"
-#include "robot/types/config.h"
 
 namespace merlin {
 

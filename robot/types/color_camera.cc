@@ -1,7 +1,7 @@
 #include "robot/types/color_camera.h"
 
-#include "robot/types/error.h"
-#include "robot/types/text_fields.h"
+#include "robot/base/error.h"
+#include "robot/base/text_fields.h"
 
 namespace merlin {
 namespace {

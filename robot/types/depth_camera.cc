@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/types/text_fields.h"
+#include "robot/base/text_fields.h"
 
 namespace merlin {
 namespace {

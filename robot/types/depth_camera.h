@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "robot/base/error.h"
 #include "robot/types/camera_model.h"
-#include "robot/types/error.h"
 #include "robot/types/time.h"
 
 namespace merlin {

@@ -3,7 +3,7 @@
 // engineering guess, (m) recalled from the named paper; every one is a starting value for a calibration of the real camera.
 #pragma once
 
-#include "robot/types/config.h"
+#include "robot/base/config.h"
 
 namespace merlin {
 

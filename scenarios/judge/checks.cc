@@ -7,8 +7,8 @@
 #include <iterator>
 #include <string_view>
 
-#include "robot/types/error.h"
-#include "robot/types/nearest_name.h"
+#include "robot/base/error.h"
+#include "robot/base/nearest_name.h"
 
 namespace merlin {
 namespace {

@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "scenarios/judge/point_grid.h"
 #include "scenarios/judge/sheet.h"
 

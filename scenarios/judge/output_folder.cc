@@ -12,7 +12,7 @@
 #include <system_error>
 #include <vector>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "scenarios/judge/output_path.h"
 #include "scenarios/judge/writers.h"
 

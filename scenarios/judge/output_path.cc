@@ -8,7 +8,7 @@
 #include <cstring>
 #include <system_error>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 namespace {

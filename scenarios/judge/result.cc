@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "robot/types/utf8.h"
+#include "robot/base/utf8.h"
 
 namespace merlin {
 namespace {

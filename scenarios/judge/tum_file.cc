@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "robot/types/error.h"
-#include "robot/types/fault_list.h"
-#include "robot/types/text_fields.h"
+#include "robot/base/error.h"
+#include "robot/base/fault_list.h"
+#include "robot/base/text_fields.h"
 
 namespace merlin {
 namespace {

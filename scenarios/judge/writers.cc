@@ -12,7 +12,7 @@
 #include <cstring>
 #include <iterator>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 namespace {

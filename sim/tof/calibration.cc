@@ -9,7 +9,7 @@ namespace merlin::sim {
 namespace {
 
 constexpr int kTableSize = 1024;
-constexpr std::uint16_t kPatternPurpose = 1;  // of sim/random.h: not the stream of any frame
+constexpr std::uint16_t kPatternPurpose = 1;  // of robot/base/random.h: not the stream of any frame
 
 // A quadratic over the picture, x and y in [-1, 1], its largest value 1 and its mean about 0.
 double Quadratic(double x, double y) { return 0.75 * (x * x + y * y - 2.0 / 3.0) + 0.25 * x * y; }

@@ -4,9 +4,9 @@
 // systems, including suppression of ambient light", LNCS 5742 (2009).
 #pragma once
 
+#include "robot/base/random.h"
 #include "robot/types/depth_camera.h"
 #include "robot/types/depth_camera_errors.h"
-#include "sim/random.h"
 #include "sim/tof/effects.h"
 
 namespace merlin::sim {

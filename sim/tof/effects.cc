@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "robot/types/error.h"
-#include "robot/types/nearest_name.h"
+#include "robot/base/error.h"
+#include "robot/base/nearest_name.h"
 
 namespace merlin::sim {
 namespace {

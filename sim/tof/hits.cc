@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/lanes.h"
-#include "sim/parallel.h"
+#include "sim/tof/lanes.h"
+#include "sim/tof/parallel.h"
 
 namespace merlin::sim {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "sim/motion.h"
-#include "sim/ray_scene.h"
+#include "sim/rays/ray_scene.h"
 #include "sim/tof/sub_grid.h"
+#include "sim/world/motion.h"
 
 namespace merlin::sim {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "sim/parallel.h"
+#include "sim/tof/parallel.h"
 
 namespace merlin::sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <optional>
 
-#include "sim/lanes.h"
-#include "sim/parallel.h"
+#include "sim/tof/lanes.h"
+#include "sim/tof/parallel.h"
 #include "sim/tof/sin_cos.h"
 
 namespace merlin::sim {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/lanes.h"
+#include "sim/tof/lanes.h"
 #include "sim/tof/sin_cos.h"
 
 namespace merlin::sim {

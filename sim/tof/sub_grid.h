@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/ray_scene.h"
+#include "sim/rays/ray_scene.h"
 #include "sim/tof/optics.h"
 
 namespace merlin::sim {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "robot/types/error.h"
-#include "sim/ray_group.h"
+#include "robot/base/error.h"
+#include "sim/rays/ray_group.h"
 
 namespace merlin::sim {
 namespace {

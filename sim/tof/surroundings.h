@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim/materials.h"
+#include "sim/world/materials.h"
 
 namespace merlin::sim {
 

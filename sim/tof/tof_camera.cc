@@ -6,10 +6,10 @@
 #include <span>
 #include <utility>
 
-#include "sim/normal_row.h"
-#include "sim/parallel.h"
 #include "sim/tof/decode.h"
 #include "sim/tof/light.h"
+#include "sim/tof/normal_row.h"
+#include "sim/tof/parallel.h"
 
 namespace merlin::sim {
 namespace {

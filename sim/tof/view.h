@@ -1,9 +1,9 @@
 // What a frame is taken of.
 #pragma once
 
-#include "sim/motion.h"
-#include "sim/ray_scene.h"
+#include "sim/rays/ray_scene.h"
 #include "sim/tof/surroundings.h"
+#include "sim/world/motion.h"
 
 namespace merlin::sim {
 

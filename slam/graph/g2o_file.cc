@@ -8,10 +8,10 @@
 #include <optional>
 #include <utility>
 
-#include "robot/types/error.h"
-#include "robot/types/fault_list.h"
-#include "robot/types/nearest_name.h"
-#include "robot/types/text_fields.h"
+#include "robot/base/error.h"
+#include "robot/base/fault_list.h"
+#include "robot/base/nearest_name.h"
+#include "robot/base/text_fields.h"
 #include "slam/graph/edge_error.h"
 #include "slam/graph/initial_poses.h"
 #include "slam/graph/parts.h"

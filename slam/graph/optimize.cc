@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "slam/graph/block_cholesky.h"
 #include "slam/graph/free_poses.h"
 

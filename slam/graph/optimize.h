@@ -6,7 +6,7 @@
 #include <atomic>
 #include <vector>
 
-#include "robot/types/config.h"
+#include "robot/base/config.h"
 #include "slam/graph/objective.h"
 #include "slam/graph/pose_graph.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "robot/types/config.h"
+#include "robot/base/config.h"
 #include "slam/keyframe.h"
 #include "slam/register/icp.h"
 

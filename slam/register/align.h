@@ -5,7 +5,7 @@
 // narrows, a part of the source's points serves.
 #pragma once
 
-#include "robot/types/config.h"
+#include "robot/base/config.h"
 #include "robot/types/se3.h"
 #include "slam/register/cloud.h"
 #include "slam/register/undetermined.h"

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "perception/observation.h"
-#include "robot/types/config.h"
+#include "robot/base/config.h"
 #include "robot/types/se3.h"
 #include "slam/map/voxel_map.h"
 #include "slam/register/undetermined.h"

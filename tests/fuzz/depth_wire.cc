@@ -1,6 +1,6 @@
 // The wire between the twin and its vendor library: what the decoder accepts it understands whole (it encodes to the
 // very bytes), and it never reads or asks for more than there can be.
-#include "robot/twin/devices/depth_wire.h"
+#include "robot/emulated/depth_wire.h"
 
 #include <algorithm>
 

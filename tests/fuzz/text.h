@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "robot/types/error.h"
-#include "robot/types/text_fields.h"
+#include "robot/base/error.h"
+#include "robot/base/text_fields.h"
 #include "tests/fuzz/target.h"
 
 namespace merlin::fuzz {

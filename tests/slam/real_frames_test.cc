@@ -10,7 +10,7 @@
 #include "slam/map/voxel_map.h"
 #include "slam/register/align.h"
 #include "slam/register/icp.h"
-#include "tests/shared_data.h"
+#include "tests/support/shared_data.h"
 
 namespace merlin {
 namespace {

@@ -17,26 +17,32 @@ using Strings = std::vector<std::string>;
 
 // Longer names first: the first that a path starts with is its room.
 const std::vector<std::pair<std::string, Strings>> kRoomsAndWhatTheyKnow{
-    {"robot/types/", {"robot/types/"}},
-    {"robot/hal/", {"robot/hal/", "robot/types/"}},
-    {"robot/protocol/", {"robot/protocol/", "robot/types/"}},
-    {"robot/description/", {"robot/description/", "robot/types/"}},
-    {"robot/hardware/", {"robot/hardware/", "robot/hal/", "robot/types/", "robot/protocol/", "robot/description/"}},
-    {"robot/twin/devices/",
-     {"robot/twin/devices/", "robot/twin/", "robot/hal/", "robot/types/", "robot/protocol/", "sim/"}},
-    {"robot/twin/", {"robot/twin/", "robot/hal/", "robot/types/", "sim/"}},
-    {"sim/", {"sim/", "robot/types/"}},
-    {"perception/", {"perception/", "robot/types/"}},
-    {"slam/", {"slam/", "perception/", "robot/types/"}},
-    {"autonomy/", {"autonomy/", "slam/", "perception/", "robot/types/"}},
+    {"robot/base/", {"robot/base/"}},
+    {"robot/types/", {"robot/types/", "robot/base/"}},
+    {"robot/kinematics/", {"robot/kinematics/", "robot/types/", "robot/base/"}},
+    {"robot/hal/", {"robot/hal/", "robot/types/", "robot/base/"}},
+    {"robot/protocol/", {"robot/protocol/", "robot/types/", "robot/base/"}},
+    {"robot/description/", {"robot/description/", "robot/types/", "robot/base/"}},
+    {"robot/hardware/",
+     {"robot/hardware/", "robot/hal/", "robot/kinematics/", "robot/types/", "robot/base/", "robot/protocol/",
+      "robot/description/"}},
+    {"robot/emulated/",
+     {"robot/emulated/", "robot/twin/", "robot/hal/", "robot/kinematics/", "robot/types/", "robot/base/",
+      "robot/protocol/", "sim/"}},
+    {"robot/twin/", {"robot/twin/", "robot/hal/", "robot/kinematics/", "robot/types/", "robot/base/", "sim/"}},
+    {"sim/", {"sim/", "robot/kinematics/", "robot/types/", "robot/base/"}},
+    {"perception/", {"perception/", "robot/kinematics/", "robot/types/", "robot/base/"}},
+    {"slam/", {"slam/", "perception/", "robot/kinematics/", "robot/types/", "robot/base/"}},
+    {"autonomy/", {"autonomy/", "slam/", "perception/", "robot/kinematics/", "robot/types/", "robot/base/"}},
+    {"scenarios/judge/", {"scenarios/judge/", "slam/", "perception/", "robot/types/", "robot/base/"}},
     {"scenarios/", {"scenarios/", "autonomy/", "slam/", "perception/", "sim/", "robot/"}},
     {"tools/", {"tools/", "scenarios/", "autonomy/", "slam/", "perception/", "sim/", "robot/"}},
     {"tests/", {"tests/", "tools/", "scenarios/", "autonomy/", "slam/", "perception/", "sim/", "robot/"}},
 };
 const Strings kEngineHeaders{"mujoco/", "embree3/", "embree4/", "EGL/", "GL/"};
 const Strings kEngineTargets{"mujoco::mujoco", "Embree::embree"};
-const Strings kEngineRooms{"sim/", "robot/twin/", "scenarios/", "tools/", "tests/"};
-const Strings kEigenOnlyRooms{"robot/types/", "robot/hal/"};
+const Strings kEngineRooms{"sim/", "robot/twin/", "robot/emulated/", "scenarios/", "tools/", "tests/"};
+const Strings kEigenOnlyRooms{"robot/types/", "robot/kinematics/", "robot/hal/"};
 
 bool Contains(const Strings& list, const std::string& item) {
   return std::find(list.begin(), list.end(), item) != list.end();
@@ -148,16 +154,16 @@ TEST(Architecture, EverySourceFileLiesInARoom) {
 
 TEST(ArchitectureCheck, FindsEveryKindOfWrongInclude) {
   const std::vector<std::pair<std::string, std::string>> wrong{
-      {"slam/slam.cc", "#include \"sim/world.h\"\n"},
+      {"slam/slam.cc", "#include \"sim/world/world.h\"\n"},
       {"autonomy/pilot.cc", "#include \"robot/twin/twin.h\"\n"},
       {"perception/fuse.cc", "#include \"robot/hal/hal.h\"\n"},
       {"perception/fuse.cc", "\n  #  include \"slam/slam.h\"\n"},
-      {"sim/world.cc", "#include \"robot/hal/hal.h\"\n"},
-      {"sim/world.cc", "#include <robot/hal/hal.h>\n"},
+      {"sim/world/world.cc", "#include \"robot/hal/hal.h\"\n"},
+      {"sim/world/world.cc", "#include <robot/hal/hal.h>\n"},
       {"robot/types/car.h", "#include <fmt/core.h>\n"},
       {"robot/hal/hal.h", "#include <opencv2/core.hpp>\n"},
       {"slam/slam.cc", "#include <mujoco/mujoco.h>\n"},
-      {"scenarios/run.cc", "#include \"tools/cli/doctor.h\"\n"},
+      {"scenarios/run/run.cc", "#include \"tools/cli/doctor.h\"\n"},
       {"slam/slam.cc", "#include \"slam.h\"\n"},
       {"autonomy/pilot.cc", "#include <embree3/rtcore.h>\n"},
   };
@@ -168,9 +174,9 @@ TEST(ArchitectureCheck, AllowsTheArrowsOfTheDesign) {
   const std::vector<std::pair<std::string, std::string>> right{
       {"slam/slam.cc", "#include \"perception/observation.h\"\n#include <vector>\n"},
       {"robot/types/se3.h", "#include <Eigen/Core>\n#include <cmath>\n"},
-      {"robot/twin/twin.cc", "#include \"sim/world.h\"\n#include <mujoco/mujoco.h>\n"},
-      {"scenarios/run.cc", "#include \"robot/twin/twin.h\"\n#include \"autonomy/pilot.h\"\n"},
-      {"perception/fuse.cc", "// as in #include \"sim/world.h\"\n"},
+      {"robot/twin/twin.cc", "#include \"sim/world/world.h\"\n#include <mujoco/mujoco.h>\n"},
+      {"scenarios/run/run.cc", "#include \"robot/twin/twin.h\"\n#include \"autonomy/pilot.h\"\n"},
+      {"perception/fuse.cc", "// as in #include \"sim/world/world.h\"\n"},
   };
   for (const auto& [file, text] : right) EXPECT_EQ(WrongIncludes(file, text), Strings{}) << file;
 }

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/tools/command.h"
 
 namespace merlin {

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <string>
 
-#include "robot/types/error.h"
-#include "sim/random.h"
-#include "sim/room.h"
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "robot/base/error.h"
+#include "robot/base/random.h"
+#include "sim/world/room.h"
+#include "tests/support/temporary_folder.h"
 #include "tools/camera/figure.h"
 #include "tools/camera/inside.h"
 #include "tools/camera/npy.h"
@@ -83,7 +83,7 @@ TEST(Pool, FindsTheSigmaThatTheNoiseHasWhateverThePixelsMeans) {
   std::vector<PixelSamples> pixels(kPixels);
   for (int p = 0; p < kPixels; ++p)
     for (int i = 0; i < kFrames; ++i) {
-      sim::Random random(3, sim::Sensor::kDepth, static_cast<std::uint64_t>(i), static_cast<std::uint32_t>(p));
+      Random random(3, Sensor::kDepth, static_cast<std::uint64_t>(i), static_cast<std::uint32_t>(p));
       pixels[static_cast<std::size_t>(p)].Add(1.0 + 0.1 * p + kSigma_m * random.Normal());
     }
   // The sample sigma of n samples scatters by sigma / sqrt(2 n): three of them.

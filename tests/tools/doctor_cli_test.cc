@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string>
 
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/tools/command.h"
 
 namespace merlin {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <string>
 
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/tools/command.h"
 
 namespace merlin {

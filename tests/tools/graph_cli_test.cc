@@ -12,9 +12,9 @@
 #include <string>
 
 #include "scenarios/judge/writers.h"
-#include "tests/oracles.h"
-#include "tests/scenarios/judge/temporary_folder.h"
-#include "tests/shared_data.h"
+#include "tests/support/oracles.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/tools/command.h"
 
 namespace merlin {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/tools/command.h"
 
 namespace merlin {

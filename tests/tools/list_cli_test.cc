@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/tools/terminal.h"
 
 namespace merlin {

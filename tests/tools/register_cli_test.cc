@@ -10,7 +10,7 @@
 #include <string>
 
 #include "robot/types/se3.h"
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/tools/command.h"
 
 namespace merlin {

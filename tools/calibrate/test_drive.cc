@@ -4,9 +4,9 @@
 #include <functional>
 #include <numbers>
 
+#include "robot/base/random.h"
 #include "robot/description/description.h"
-#include "scenarios/names.h"
-#include "sim/random.h"
+#include "scenarios/config/names.h"
 
 namespace merlin {
 namespace {
@@ -139,7 +139,7 @@ class Comparison {
 MeasuredDrives DriveAndMeasure(const sim::WorldOptions& twin) {
   MeasuredDrives drives;
   auto tape = [&drives, seed = twin.seed, index = std::uint64_t{0}](double true_m) mutable {
-    return true_m + drives.tape_sigma_m * sim::Random(seed, sim::Sensor::kDrive, index++, 0, kTapeNoise).Normal();
+    return true_m + drives.tape_sigma_m * Random(seed, Sensor::kDrive, index++, 0, kTapeNoise).Normal();
   };
   for (const double way_m : {4.0, 6.0}) drives.straights.push_back(DriveStraight(twin, way_m));
   for (const double side : {1.0, -1.0})

@@ -6,9 +6,9 @@
 
 #include "perception/calibrate_odometry.h"
 #include "perception/odometry.h"
-#include "scenarios/scenario.h"
-#include "sim/materials.h"
-#include "sim/world.h"
+#include "scenarios/config/scenario.h"
+#include "sim/world/materials.h"
+#include "sim/world/world.h"
 
 namespace merlin {
 

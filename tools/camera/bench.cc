@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "robot/base/error.h"
 #include "robot/description/description.h"
-#include "robot/types/error.h"
-#include "scenarios/names.h"
-#include "sim/color_camera.h"
+#include "scenarios/config/names.h"
+#include "sim/color/color_camera.h"
 #include "tools/camera/measure.h"
 #include "tools/camera/stage.h"
 #include "tools/json_text.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "scenarios/judge/writers.h"
 #include "tools/camera/npy.h"
 #include "tools/camera/stage.h"

@@ -5,8 +5,8 @@
 #include <set>
 #include <vector>
 
-#include "sim/ray_group.h"
-#include "sim/room.h"
+#include "sim/rays/ray_group.h"
+#include "sim/world/room.h"
 
 namespace merlin {
 namespace {

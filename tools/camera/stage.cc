@@ -6,8 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "robot/types/error.h"
-#include "sim/room.h"
+#include "robot/base/error.h"
+#include "sim/world/room.h"
 #include "tools/camera/inside.h"
 
 namespace merlin {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "robot/types/se3.h"
-#include "sim/materials.h"
-#include "sim/motion.h"
-#include "sim/ray_scene.h"
+#include "sim/rays/ray_scene.h"
 #include "sim/tof/surroundings.h"
 #include "sim/tof/tof_camera.h"
+#include "sim/world/materials.h"
+#include "sim/world/motion.h"
 
 namespace merlin {
 

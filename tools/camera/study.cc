@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "robot/types/error.h"
-#include "robot/types/nearest_name.h"
+#include "robot/base/error.h"
+#include "robot/base/nearest_name.h"
 #include "tools/camera/study_parts.h"
 
 namespace merlin {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "tools/cli/commands.h"
 #if MERLIN_TWIN
 #include "tools/camera/bench.h"

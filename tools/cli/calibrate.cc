@@ -8,17 +8,17 @@
 #include <vector>
 
 #include "perception/calibrate_odometry.h"
+#include "robot/base/error.h"
 #include "robot/description/description.h"
-#include "robot/types/error.h"
-#include "scenarios/calibration.h"
+#include "scenarios/config/calibration.h"
+#include "scenarios/config/names.h"
+#include "scenarios/config/scenario.h"
 #include "scenarios/judge/output_path.h"
 #include "scenarios/judge/writers.h"
-#include "scenarios/names.h"
-#include "scenarios/scenario.h"
 #include "tools/cli/commands.h"
 #include "tools/json_text.h"
 #if MERLIN_TWIN
-#include "sim/true_car.h"
+#include "sim/world/true_car.h"
 #include "tools/calibrate/test_drive.h"
 #endif
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "robot/types/error.h"
-#include "scenarios/names.h"
+#include "robot/base/error.h"
+#include "scenarios/config/names.h"
 #include "tools/cli/commands.h"
 #if MERLIN_TWIN
 #include "robot/description/description.h"

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "scenarios/names.h"
+#include "scenarios/config/names.h"
 #include "tools/cli/gl_probe.h"
 #include "tools/cli/licenses.h"
 #include "tools/json_text.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "robot/types/error.h"
-#include "scenarios/hardware_file.h"
+#include "robot/base/error.h"
+#include "scenarios/config/hardware_file.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/doctor.h"
 #include "tools/json_text.h"

@@ -10,18 +10,18 @@
 #include <string>
 #include <vector>
 
-#include "robot/hardware/joystick_device.h"
-#include "robot/types/error.h"
-#include "scenarios/scenario.h"
+#include "robot/base/error.h"
+#include "robot/hardware/operator/joystick_device.h"
+#include "scenarios/config/scenario.h"
 #include "tools/cli/commands.h"
 #include "tools/drive/keys.h"
 #include "tools/drive/raw_terminal.h"
 #include "tools/drive/stick.h"
 #if MERLIN_TWIN
 #include "robot/description/description.h"
+#include "scenarios/config/names.h"
 #include "scenarios/judge/output_folder.h"
-#include "scenarios/names.h"
-#include "scenarios/run.h"
+#include "scenarios/run/run.h"
 #include "tools/cli/run_options.h"
 #include "tools/cli/terminal.h"
 #include "tools/drive/radio_hand.h"

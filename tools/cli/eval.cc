@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
+#include "robot/base/read_file.h"
 #include "scenarios/judge/alignment.h"
 #include "scenarios/judge/tum_file.h"
 #include "tools/cli/commands.h"
-#include "tools/cli/read_file.h"
 
 namespace merlin::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <exception>
 
-#include "sim/renderer.h"
+#include "sim/color/renderer.h"
 #endif
 
 namespace merlin::cli {

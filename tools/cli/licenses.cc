@@ -17,7 +17,7 @@
 
 #include <boost/version.hpp>
 
-#include "sim/embree.h"
+#include "sim/rays/embree.h"
 #endif
 
 namespace merlin::cli {

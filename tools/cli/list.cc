@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "autonomy/pilot.h"
-#include "scenarios/names.h"
+#include "scenarios/config/names.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/description.h"
 #include "tools/cli/terminal.h"

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/usage.h"
 #include "tools/drive/raw_terminal.h"

@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "robot/base/read_file.h"
 #include "scenarios/judge/output_path.h"
 #include "scenarios/judge/writers.h"
 #include "slam/graph/g2o_file.h"
 #include "slam/graph/initial_poses.h"
 #include "slam/graph/parts.h"
 #include "tools/cli/commands.h"
-#include "tools/cli/read_file.h"
 
 namespace merlin::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "scenarios/judge/output_path.h"
 #include "scenarios/judge/writers.h"
 #include "slam/register/align.h"

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "robot/types/error.h"
-#include "scenarios/scenario.h"
+#include "robot/base/error.h"
+#include "scenarios/config/scenario.h"
 #include "tools/cli/commands.h"
 #if MERLIN_TWIN
 #include "scenarios/judge/output_folder.h"
-#include "scenarios/run.h"
+#include "scenarios/run/run.h"
 #include "tools/cli/run_options.h"
 #include "tools/cli/terminal.h"
 #endif

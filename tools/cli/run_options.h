@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scenarios/run.h"
+#include "scenarios/run/run.h"
 
 namespace merlin::cli {
 

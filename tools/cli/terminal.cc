@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "robot/types/utf8.h"
+#include "robot/base/utf8.h"
 
 namespace merlin::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include "robot/types/nearest_name.h"
+#include "robot/base/nearest_name.h"
 #include "tools/cli/terminal.h"
 
 namespace merlin::cli {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <system_error>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "tools/cloud/text.h"
 
 namespace merlin {

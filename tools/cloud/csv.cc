@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "robot/types/error.h"
-#include "robot/types/fault_list.h"
+#include "robot/base/error.h"
+#include "robot/base/fault_list.h"
 #include "tools/cloud/cloud_file.h"
 #include "tools/cloud/columns.h"
 #include "tools/cloud/text.h"

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 

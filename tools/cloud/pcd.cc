@@ -4,8 +4,8 @@
 #include <limits>
 #include <map>
 
-#include "robot/types/error.h"
-#include "robot/types/fault_list.h"
+#include "robot/base/error.h"
+#include "robot/base/fault_list.h"
 #include "tools/cloud/cloud_file.h"
 #include "tools/cloud/columns.h"
 #include "tools/cloud/lzf.h"

@@ -2,8 +2,8 @@
 #include <map>
 #include <utility>
 
-#include "robot/types/error.h"
-#include "robot/types/fault_list.h"
+#include "robot/base/error.h"
+#include "robot/base/fault_list.h"
 #include "tools/cloud/cloud_file.h"
 #include "tools/cloud/columns.h"
 #include "tools/cloud/scalar.h"

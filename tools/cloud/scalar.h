@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 

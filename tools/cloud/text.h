@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "robot/types/text_fields.h"
+#include "robot/base/text_fields.h"
 
 namespace merlin::cloud_text {
 

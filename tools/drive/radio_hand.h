@@ -1,12 +1,12 @@
 // The operator's hand at the other end of a radio: what it wants travels through the model of MERLIN's modems
-// (robot/twin/devices/radio.h), in sevenths of the limits, late and sometimes not at all.
+// (robot/emulated/radio.h), in sevenths of the limits, late and sometimes not at all.
 #pragma once
 
 #include <cstdint>
 
 #include "autonomy/arbitrate.h"
+#include "robot/emulated/radio.h"
 #include "robot/protocol/operator.h"
-#include "robot/twin/devices/radio.h"
 #include "tools/drive/hand.h"
 
 namespace merlin {

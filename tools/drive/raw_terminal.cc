@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cerrno>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 namespace {

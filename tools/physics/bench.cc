@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "robot/description/description.h"
-#include "scenarios/names.h"
-#include "sim/world.h"
+#include "scenarios/config/names.h"
+#include "sim/world/world.h"
 
 namespace merlin {
 namespace {

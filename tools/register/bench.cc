@@ -11,7 +11,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "slam/register/align.h"
 #include "tools/register/pairs.h"
 

@@ -11,9 +11,9 @@
 
 #include "perception/pipeline.h"
 #include "robot/twin/twin.h"
-#include "scenarios/drive_loop.h"
-#include "scenarios/names.h"
-#include "scenarios/twin_options.h"
+#include "scenarios/config/names.h"
+#include "scenarios/run/drive_loop.h"
+#include "scenarios/run/twin_options.h"
 #include "slam/slam.h"
 
 namespace merlin {

@@ -1,11 +1,11 @@
 // The colour driver and the emulated network camera, joined by a stream on this machine.
-#include "robot/hardware/color_capture.h"
+#include "robot/hardware/color/color_capture.h"
 
 #include <gtest/gtest.h>
 
-#include "robot/twin/devices/mjpeg_server.h"
-#include "robot/types/error.h"
-#include "tests/robot/until.h"
+#include "robot/base/error.h"
+#include "robot/emulated/mjpeg_server.h"
+#include "tests/support/until.h"
 
 namespace merlin {
 namespace {

@@ -8,14 +8,14 @@
 #include <mutex>
 #include <thread>
 
-#include "robot/hardware/compass_3dm_driver.h"
-#include "robot/hardware/microcontroller_drive.h"
+#include "robot/base/error.h"
+#include "robot/emulated/compass_3dm_emulator.h"
+#include "robot/emulated/serial_line.h"
+#include "robot/emulated/serial_pump.h"
+#include "robot/hardware/compass/compass_3dm_driver.h"
+#include "robot/hardware/drive/microcontroller_drive.h"
 #include "robot/hardware/real_clock.h"
-#include "robot/twin/devices/compass_3dm_emulator.h"
-#include "robot/twin/devices/serial_line.h"
-#include "robot/twin/devices/serial_pump.h"
-#include "robot/types/error.h"
-#include "tests/robot/twin/devices/toy_car.h"
+#include "tests/robot/emulated/toy_car.h"
 
 namespace merlin {
 namespace {

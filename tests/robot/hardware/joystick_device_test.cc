@@ -1,12 +1,12 @@
-#include "robot/hardware/joystick_device.h"
+#include "robot/hardware/operator/joystick_device.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "robot/types/error.h"
-#include "tests/robot/joystick_pipe.h"
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "robot/base/error.h"
+#include "tests/support/joystick_pipe.h"
+#include "tests/support/temporary_folder.h"
 
 namespace merlin {
 namespace {

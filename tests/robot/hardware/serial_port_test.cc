@@ -1,11 +1,11 @@
 // What a port says that cannot be had. The ports are pseudo-terminals.
-#include "robot/hardware/serial_port.h"
+#include "robot/hardware/serial/serial_port.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "robot/twin/devices/pseudo_terminal.h"
-#include "robot/types/error.h"
+#include "robot/base/error.h"
+#include "robot/emulated/pseudo_terminal.h"
 
 namespace merlin {
 namespace {

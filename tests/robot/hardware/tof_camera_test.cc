@@ -1,5 +1,5 @@
 // The ToF driver and the emulated vendor library, joined by the very socket that a run uses.
-#include "robot/hardware/tof_camera.h"
+#include "robot/hardware/depth/tof_camera.h"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -12,11 +12,11 @@
 #include <mutex>
 #include <random>
 
+#include "robot/base/error.h"
+#include "robot/emulated/depth_connection.h"
+#include "robot/emulated/depth_server.h"
 #include "robot/protocol/pmd_api.h"
-#include "robot/twin/devices/depth_connection.h"
-#include "robot/twin/devices/depth_server.h"
-#include "robot/types/error.h"
-#include "tests/robot/until.h"
+#include "tests/support/until.h"
 
 namespace merlin {
 namespace {

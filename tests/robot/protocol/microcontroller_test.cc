@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin::microcontroller {
 namespace {

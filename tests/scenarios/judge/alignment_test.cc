@@ -13,7 +13,7 @@
 #include <sstream>
 
 #include "scenarios/judge/tum_file.h"
-#include "tests/shared_data.h"
+#include "tests/support/shared_data.h"
 
 namespace merlin {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 namespace {

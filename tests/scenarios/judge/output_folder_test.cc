@@ -5,9 +5,9 @@
 
 #include <set>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "scenarios/judge/writers.h"
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace merlin {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <iterator>
 
-#include "robot/types/error.h"
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "robot/base/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace merlin {
 namespace {

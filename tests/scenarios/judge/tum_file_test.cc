@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "scenarios/judge/writers.h"
-#include "tests/mutate.h"
+#include "tests/support/mutate.h"
 
 namespace merlin {
 namespace {

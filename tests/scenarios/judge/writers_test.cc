@@ -5,8 +5,8 @@
 #include <cstring>
 #include <numbers>
 
-#include "robot/types/error.h"
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "robot/base/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace merlin {
 namespace {

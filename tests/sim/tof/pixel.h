@@ -7,9 +7,9 @@
 #include <numbers>
 #include <string>
 
+#include "robot/base/random.h"
 #include "robot/types/depth_camera.h"
 #include "robot/types/depth_camera_errors.h"
-#include "sim/random.h"
 #include "sim/tof/chip.h"
 
 namespace merlin::sim {

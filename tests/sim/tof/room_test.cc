@@ -1,5 +1,5 @@
 // The camera in our own rooms, against rays traced one by one, brute force and what the experiments showed.
-#include "sim/room.h"
+#include "sim/world/room.h"
 
 #include <gtest/gtest.h>
 

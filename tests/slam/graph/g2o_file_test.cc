@@ -4,11 +4,11 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 #include "slam/graph/initial_poses.h"
 #include "slam/graph/optimize.h"
-#include "tests/mutate.h"
 #include "tests/slam/graph/random_graph.h"
+#include "tests/support/mutate.h"
 
 namespace merlin {
 namespace {

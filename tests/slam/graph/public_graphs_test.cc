@@ -7,7 +7,7 @@
 #include "slam/graph/g2o_file.h"
 #include "slam/graph/initial_poses.h"
 #include "slam/graph/optimize.h"
-#include "tests/shared_data.h"
+#include "tests/support/shared_data.h"
 
 namespace merlin {
 namespace {

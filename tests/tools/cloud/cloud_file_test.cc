@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "robot/types/error.h"
-#include "robot/types/text_fields.h"
+#include "robot/base/error.h"
+#include "robot/base/text_fields.h"
 #include "scenarios/judge/writers.h"
-#include "tests/scenarios/judge/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace merlin {
 namespace {

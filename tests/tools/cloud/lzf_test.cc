@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 namespace {

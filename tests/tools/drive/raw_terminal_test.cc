@@ -8,7 +8,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "robot/types/error.h"
+#include "robot/base/error.h"
 
 namespace merlin {
 namespace {

@@ -1,0 +1,48 @@
+// The faults of one file, gathered so that a user sees them all at once: a line each, up to a dozen.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "robot/base/error.h"
+
+namespace merlin {
+
+class FaultList {
+ public:
+  // name: the file's, for the line that counts what is not shown; empty where the faults name it.
+  explicit FaultList(std::string name = {}) : name_(std::move(name)) {}
+
+  // Runs a step of reading, and notes the InputError that it throws. Returns whether there was none.
+  template <class Step>
+  bool Try(Step step) {
+    try {
+      step();
+      return true;
+    } catch (const InputError& error) {
+      Add(error);
+      return false;
+    }
+  }
+
+  void Add(const InputError& fault) { Add(std::string(fault.what())); }
+  void Add(const std::string& fault) {
+    constexpr std::size_t kShown = 12;
+    if (++count_ <= kShown) text_ += (text_.empty() ? "" : "\n") + fault;
+    if (count_ > kShown)
+      more_ = "\n" + name_ + (name_.empty() ? "and " : ": and ") + std::to_string(count_ - kShown) + " more";
+  }
+
+  bool empty() const { return count_ == 0; }
+
+  // Throws one InputError with every fault, if there is any.
+  void ThrowIfAny() const {
+    if (!empty()) throw InputError(text_ + more_);
+  }
+
+ private:
+  std::string name_, text_, more_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace merlin

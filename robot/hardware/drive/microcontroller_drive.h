@@ -1,0 +1,38 @@
+// MERLIN's motor, steering and (if it has one) pan unit, behind its microcontroller on a serial port. Its thread is its
+// own: no call waits for the port. Braking never depends on this program: the microcontroller brakes when a command
+// expires and when none comes.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "robot/hal/clock.h"
+#include "robot/hal/drive.h"
+#include "robot/hal/pan_unit.h"
+#include "robot/hardware/drive/microcontroller_host.h"
+
+namespace merlin {
+
+class MicrocontrollerDrive : public Drive {
+ public:
+  // Throws MachineError if the port cannot be opened. The clock outlives this, and may be asked from any thread.
+  MicrocontrollerDrive(const MicrocontrollerConfig& config, const Clock& clock);
+  // Stops the car.
+  ~MicrocontrollerDrive() override;
+
+  void Send(const DriveCommand& command) override;
+  std::optional<DriveState> Poll() override;
+  DeviceStatus Status() const override;
+
+  // Absent as long as the microcontroller reports none.
+  PanUnit& pan();
+
+  std::string firmware() const;   // empty until it has said
+  std::string Complaint() const;  // what is wrong, one sentence; empty if nothing is
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace merlin

@@ -1,0 +1,54 @@
+// A serial port of this machine: raw bytes, 8N1, no flow control; nothing here ever blocks but Wait.
+#pragma once
+
+#include <string>
+
+#include "robot/base/config.h"
+#include "robot/protocol/bytes.h"
+#include "robot/types/time.h"
+
+namespace merlin {
+
+struct SerialConfig {
+  std::string port;  // as /dev/ttyUSB0; better a name that stays: /dev/serial/by-id/...
+  int baud = 9600;   // 9600, 19200, 57600 or 115200, as the device is set
+};
+
+template <class Visitor>
+void Visit(Visitor& v, SerialConfig& c) {
+  v("port", c.port);
+  v("baud", c.baud, Range{9600, 115200});
+}
+
+class SerialPort {
+ public:
+  // Throws InputError for another baud rate. Opens nothing yet.
+  explicit SerialPort(const SerialConfig& config);
+  ~SerialPort();
+  SerialPort(const SerialPort&) = delete;
+  SerialPort& operator=(const SerialPort&) = delete;
+
+  // Throws MachineError, one sentence: no such port, not a serial port, no permission, belongs to another program. What
+  // came before is thrown away. While it is open no other program that locks its ports can open it.
+  void Open();
+  bool is_open() const { return fd_ >= 0; }
+
+  // All that has come, up to some. A port that has gone (unplugged) closes itself: see is_open().
+  Bytes Read();
+  // What the line cannot take now is dropped: late bytes would be worse than none.
+  void Write(BytesView bytes);
+  // Until something can be read, another thread calls Wake, or the time is over.
+  void Wait(Duration timeout);
+  void Wake();
+
+ private:
+  void Close();
+  void SetUp();
+  [[noreturn]] void Fail(const std::string& what) const;
+
+  SerialConfig config_;
+  int fd_ = -1;
+  int wake_fd_ = -1;
+};
+
+}  // namespace merlin

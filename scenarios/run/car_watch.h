@@ -1,0 +1,38 @@
+// Sees when a run has come to its end because the car is no longer where or how a car drives.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "sim/world/world.h"
+
+namespace merlin {
+
+// The floor plan's bounding box [m], x and y in the world's frame: of all geoms but the car's, obstacles' and planes
+// without end. Empty: there are none, or the car does not stand in it (the room lies beside the car).
+std::optional<Eigen::AlignedBox2d> RoomBox_m(const sim::World& world);
+
+class CarWatch {
+ public:
+  // on_stand: the car stands on the turntable, where its wheels are to touch nothing.
+  CarWatch(const sim::World& world, bool on_stand);
+
+  // After every step.
+  void Watch(const sim::World& world);
+
+  // The first reason why the run must end, a sentence; empty: none. No wheel has touched the ground for 0.5 s; the car
+  // tilts by more than 45 degrees; it is more than 0.5 m below its start; it is more than 1 m outside the room's box.
+  const std::string& lost() const { return lost_; }
+
+ private:
+  std::string Reason(const sim::World& world) const;
+
+  bool on_stand_;
+  double start_z_m_;
+  std::optional<Eigen::AlignedBox2d> room_m_;
+  Time on_ground_;  // when a wheel last touched it
+  std::string lost_;
+};
+
+}  // namespace merlin

@@ -1,0 +1,23 @@
+#include "scenarios/run/versions.h"
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <opencv2/core/version.hpp>
+
+#include "sim/rays/embree.h"
+
+namespace merlin {
+
+std::vector<std::pair<std::string, std::string>> Versions() {
+  const auto dotted = [](int a, int b, int c) {
+    return std::to_string(a) + "." + std::to_string(b) + "." + std::to_string(c);
+  };
+  return {
+      {"merlin", MERLIN_VERSION},     {"mujoco", mj_versionString()},
+      {"embree", RTC_VERSION_STRING}, {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+      {"opencv", CV_VERSION},         {"compiler", __VERSION__},
+  };
+}
+
+}  // namespace merlin

@@ -1,0 +1,70 @@
+// Embree's view of the MuJoCo model: rays against every visible geom (group 0-2, alpha > 0: the material's where there
+// is one), moving bodies included. What mj_ray would say, in float and faster: planes are seen from above only
+// (infinite ones reach 1000 m each way), other geoms from inside, too.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/world/motion.h"
+
+namespace merlin::sim {
+
+constexpr int kNoFace = -1, kCurvedFace = -2;
+constexpr float kClear_m = 1e-3f;  // a ray begins this far off the surface that it leaves
+
+struct RayHit {
+  float range_m = -1.0f;            // along the unit direction; negative: nothing within reach
+  int geom = -1;                    // MuJoCo geom id
+  int face = kNoFace;               // number of the plane that was met; kCurvedFace: no plane
+  Eigen::Vector3f normal{0, 0, 0};  // unit, world frame, facing the ray's origin
+};
+
+// A plane of one geom, as it stands in the world.
+struct Face {
+  int geom = -1;
+  Eigen::Vector3f normal{0, 0, 0};  // unit
+  float offset_m = 0.0f;            // normal . p of its points
+};
+
+struct Ray {
+  Eigen::Vector3f origin{0, 0, 0};     // world
+  Eigen::Vector3f direction{1, 0, 0};  // unit, world
+  float max_range_m = 100.0f;          // beyond it nothing is seen
+};
+
+enum class Panes { kSeen, kLookedThrough };
+
+class RayScene {
+ public:
+  // Every body where the model puts it. Throws InputError for a geom it cannot see (height field, signed distance
+  // field), MachineError when Embree does not start. Left out are the geoms of the bodies for which skip_body(body_id)
+  // is true (the camera's own car). Geoms for which is_pane(geom_id) is true can be looked through; empty: none.
+  RayScene(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane = {});
+  ~RayScene();
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+
+  // Moves the bodies to where they are dt_s later. Not to be called while rays are traced.
+  void Update(const BodyMotions& bodies, double dt_s = 0.0);
+  // hits has the size of rays. Rays are traced in packets of eight in the order given: the same call gives the same
+  // bits, so a caller who splits rays between threads must not let the number of threads decide what one call holds.
+  void Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes = Panes::kSeen) const;
+  // blocked[i] = 1 where ray i meets anything before its max_range_m.
+  void Occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Panes panes) const;
+  // What the faces of hits are, where the last Update put them.
+  const std::vector<Face>& faces() const;
+  // Does anything that can be seen move?
+  bool Moves(const BodyMotions& bodies) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace merlin::sim

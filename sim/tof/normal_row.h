@@ -1,0 +1,29 @@
+// Normally distributed numbers for a row of pixels, many at a time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "robot/base/random.h"
+
+namespace merlin::sim {
+
+// Four of each of count neighbouring pixels, mean 0, sigma 1, [number][pixel]; |value| < 6.8. A pure function of seed,
+// sensor, frame, pixel, purpose and draw, with streams as Random's of the same purpose, from which it must differ.
+class NormalRow {
+ public:
+  explicit NormalRow(std::size_t count) : count_(count) {
+    for (std::vector<float>& row : of) row.resize((count + 7) / 8 * 8);
+  }
+  // draw: which four of a pixel's; first_pixel: of the row.
+  void Draw(std::uint64_t seed, Sensor sensor, std::uint64_t frame, std::uint32_t first_pixel, std::uint16_t purpose,
+            std::uint32_t draw);
+
+  std::array<std::vector<float>, 4> of;
+
+ private:
+  std::size_t count_;
+};
+
+}  // namespace merlin::sim

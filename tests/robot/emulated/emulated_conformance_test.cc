@@ -1,0 +1,88 @@
+// The twin behind the real drivers against the conformance suite: the same promises, over serial lines, a maker's library
+// and a stream, in real time.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "robot/description/description.h"
+#include "robot/emulated/emulated_robot.h"
+#include "robot/hardware/hardware_robot.h"
+#include "tests/robot/hal/conformance.h"
+#include "tests/sim/world/car_world.h"
+#include "tests/support/cable.h"
+#include "tests/support/temporary_folder.h"
+
+namespace merlin {
+namespace {
+
+constexpr double kWall_m = 7.0;
+
+constexpr char kRoom[] = R"(<geom name="floor" type="plane" size="20 20 1"/>
+  <geom name="wall" type="box" size="0.1 5 2" pos="7.1 0 2"/>)";
+
+TwinOptions Options(const sim::TemporaryFile& room) {
+  TwinOptions options;
+  options.world.room = room.path();
+  options.world.car = sim::Merlin();
+  options.world.car.pan->moves = true;
+  options.depth.sheet = ReadDepthCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/pmd_3k_s.yaml");
+  options.compass.emplace();
+  return options;
+}
+
+HardwareConfig DevicesOf(const EmulatedRobot& emulated, const std::filesystem::path& drive_port) {
+  HardwareConfig config;
+  config.clock.watchdog_s = 10.0;  // a test may take its time between two waits
+  config.drive.serial = {drive_port, EmulatedRobot::kDriveBaud};
+  config.compass.emplace().serial = {*emulated.compass_port(), 9600};
+  config.depth.pmd.library = PMD_LIBRARY;
+  config.depth.pmd.source_argument = emulated.depth_socket();
+  return config;
+}
+
+class RiggedEmulation final : public Rigged {
+ public:
+  RiggedEmulation()
+      : room_("room.xml", sim::Room(kRoom)),
+        options_(Options(room_)),
+        clock_({.watchdog_s = 10.0}, Time::max()),
+        emulated_(options_, sockets_.path(), clock_),
+        drive_cable_(emulated_.drive_port(), EmulatedRobot::kDriveBaud, sockets_.path() / "drive") {
+    emulated_.Start();
+    hardware_ = std::make_unique<HardwareRobot>(
+        DevicesOf(emulated_, drive_cable_.port()),
+        HardwareCameras{.depth = {options_.depth.sheet, options_.world.car.T_base_depth, options_.depth.rate_hz},
+                        .depth_settings = options_.depth.settings},
+        clock_);
+    for (const std::string& complaint : hardware_->WaitUntilReady(std::chrono::seconds(20))) ADD_FAILURE() << complaint;
+    const Robot robot = hardware_->robot();
+    while (robot.drive->Poll() || robot.compass->Poll() || robot.depth->Poll()) continue;  // what came meanwhile
+  }
+  Robot robot() override { return hardware_->robot(); }
+  CarDescription car() override { return sim::Merlin(); }
+  double wall_ahead_m() override { return kWall_m; }
+  double start_yaw_rad() override { return 0.0; }
+  double compass_sigma_rad() override { return sim::CompassConfig{}.yaw_noise_rad; }
+  Duration slack() override { return std::chrono::milliseconds(150); }
+  bool Unplug() override {
+    drive_cable_.Pull();
+    return true;
+  }
+  void PlugIn() override { drive_cable_.PlugIn(); }
+
+ private:
+  sim::TemporaryFile room_;
+  TemporaryFolder sockets_;
+  TwinOptions options_;
+  RealClock clock_;
+  EmulatedRobot emulated_;
+  Cable drive_cable_;
+  std::unique_ptr<HardwareRobot> hardware_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Emulated, HalConformance,
+                         ::testing::Values(Plug{"emulated", [] { return std::make_unique<RiggedEmulation>(); }}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace merlin
