@@ -98,7 +98,7 @@ Phasors Gather(const RayScene& scene, const Lights& lights, const Eigen::Vector3
       distance[i] = std::sqrt(squared);
       const float least = 1e-4f * distance[i];
       const float form = power[i] * here * there / (squared * (squared + disc_m2[i]));
-      gain[i] = (here > least) & (there > least) ? form : 0.0f;
+      gain[i] = ((here > least) & (there > least)) ? form : 0.0f;
       turn[i] = wave_number * 0.5f * (range_m[i] + distance[i]);
     }
   }

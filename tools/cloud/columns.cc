@@ -49,8 +49,8 @@ std::vector<std::string> Plain(std::span<const std::string_view> names) {
 bool HaveCoordinates(std::span<const std::string_view> names) {
   const std::vector<std::string> plain = Plain(names);
   const auto has = [&plain](const char* name) { return std::ranges::find(plain, name) != plain.end(); };
-  return std::ranges::all_of(std::initializer_list{kX, kY, kZ},
-                             [&](const auto& wanted) { return std::ranges::any_of(wanted, has); });
+  const auto has_one_of = [&has](const auto& wanted) { return std::ranges::any_of(wanted, has); };
+  return has_one_of(kX) && has_one_of(kY) && has_one_of(kZ);
 }
 
 Columns::Columns(std::span<const std::string_view> names, const std::string& where) {

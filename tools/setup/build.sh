@@ -12,7 +12,7 @@ configure() { # preset
   local dir=$top/build/$1 log=$top/build/$1/configure.log
   ! configured "$dir" || return 0
   mkdir -p "$dir" 2>/dev/null || stop 3 "cannot write in $top/build, where it is built"
-  (cd "$top" && cmake --fresh --preset "$1" "-DMUJOCO_ROOT:PATH=$mujoco_root" ${CI:+-DCMAKE_COMPILE_WARNING_AS_ERROR=ON}) >"$log" 2>&1 </dev/null || {
+  (cd "$top" && cmake --fresh --preset "$1" "-DMUJOCO_ROOT:PATH=$mujoco_root" ${CI:+-DCMAKE_COMPILE_WARNING_AS_ERROR=ON} ${compiler:+"-DCMAKE_CXX_COMPILER=$compiler"}) >"$log" 2>&1 </dev/null || {
     grep -A 8 '^CMake Error' "$log" >&2 || tail -n 20 "$log" >&2
     rm -f "$dir/build.ninja"
     stop 3 "CMake could not configure the build (log: $log)"
