@@ -26,7 +26,7 @@ TwinOptions Options(const sim::TemporaryFile& room) {
   options.world.car = sim::Merlin();
   options.world.car.pan->moves = true;
   options.depth.sheet = ReadDepthCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/pmd_3k_s.yaml");
-  options.compass.emplace();
+  options.compass = TwinOptions::Compass{};
   return options;
 }
 

@@ -161,7 +161,7 @@ TEST(EmptyBattery, LeavesTheCarStandingWithAReserve) {
   options.world.drivetrain.battery = {.capacity_ah = 0.05, .charge = 0.12};
   options.materials = sim::ReadMaterials(models / "materials.yaml");
   options.depth.sheet = ReadDepthCameraSheet(models / "cameras/pmd_3k_s.yaml");
-  options.compass.emplace();
+  options.compass = TwinOptions::Compass{};
   options.end = std::chrono::seconds(60);
   Twin twin(options);
   DriveLoop loop(twin.robot(), options.world.car, {}, {}, {}, {});
@@ -185,7 +185,7 @@ TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
       models / "rooms/corridor_26x21.xml", ReadCar(models / "merlin/merlin.urdf"), FromXyYaw(-12.2, -9.5, 0.0), {}};
   options.materials = sim::ReadMaterials(models / "materials.yaml");
   options.depth.sheet = ReadDepthCameraSheet(models / "cameras/pmd_3k_s.yaml");
-  options.compass.emplace();
+  options.compass = TwinOptions::Compass{};
   options.end = std::chrono::seconds(80);
   Twin twin(options);
   DriveLoop loop(twin.robot(), options.world.car, {}, {}, {}, {});

@@ -39,7 +39,7 @@ class ManualDrive : public ::testing::Test {
     options_.world.room = room_.path();
     options_.world.car = sim::Merlin();
     options_.depth.sheet = ReadDepthCameraSheet(models / "cameras/pmd_3k_s.yaml");
-    options_.compass.emplace();
+    options_.compass = TwinOptions::Compass{};
     options_.threads = 1;
     pipe_.Open();
   }
