@@ -39,7 +39,7 @@ struct RealClock::Impl {
 
   const Steady::time_point start = Steady::now();
   const Duration watchdog;
-  const Time end;
+  Time end;  // the stack's thread alone
   std::mutex mutex;
   std::condition_variable wake;
   std::optional<Time> working_since;  // the stack came back from WaitUntil and works on its tick
@@ -74,6 +74,8 @@ bool RealClock::WaitUntil(Time time) {
   impl_->told = false;
   return !impl_->ended && time < impl_->end && Now() < impl_->end;
 }
+
+void RealClock::EndAt(Time end) { impl_->end = std::min(end, kForever); }
 
 void RealClock::End() {
   {

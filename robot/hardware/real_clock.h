@@ -28,6 +28,8 @@ class RealClock : public Clock {
   // From any thread.
   Time Now() const override;
   bool WaitUntil(Time time) override;
+  // From that time on WaitUntil returns false, as end of the constructor has it. From the stack's thread.
+  void EndAt(Time end);
   // The run is over: WaitUntil returns false at once, also one that waits now. From any thread, not from a signal
   // handler.
   void End();

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "robot/types/se3.h"
-#include "scenarios/judge/trajectory.h"
+#include "robot/types/trajectory.h"
 
 namespace merlin {
 

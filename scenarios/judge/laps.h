@@ -1,8 +1,8 @@
 // Counts laps around a room from the true path.
 #pragma once
 
+#include "robot/types/trajectory.h"
 #include "scenarios/judge/outline.h"
-#include "scenarios/judge/trajectory.h"
 
 namespace merlin {
 

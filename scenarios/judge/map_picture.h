@@ -6,10 +6,10 @@
 #include <string>
 
 #include "robot/types/se3.h"
+#include "robot/types/trajectory.h"
 #include "scenarios/judge/map_point.h"
 #include "scenarios/judge/map_size.h"
 #include "scenarios/judge/outline.h"
-#include "scenarios/judge/trajectory.h"
 
 namespace merlin {
 

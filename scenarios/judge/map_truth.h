@@ -1,20 +1,15 @@
 // The map against the true surfaces: how much of the plan it shows, and how far its walls lie from the true ones.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 
+#include "robot/types/ground_truth.h"
 #include "robot/types/se3.h"
 #include "scenarios/judge/map_point.h"
 #include "scenarios/judge/outline.h"
-#include "scenarios/judge/trajectory.h"
 
 namespace merlin {
-
-// Distance [m] from an origin along a unit direction, both in the world's frame, to the nearest true surface, seen from
-// either side; infinite if there is none. The room only: without the car.
-using TrueRange = std::function<double(const Eigen::Vector3d& origin_world, const Eigen::Vector3d& direction_world)>;
 
 // Share of the plan's visible wall length that the map shows, [0, 100]. The outline is sampled every 5 cm, 1 m above
 // the floor (z = 0). A sample is visible if from 0.35 m above some true position (one each 0.25 m of path), at most 7 m

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "robot/types/trajectory.h"
 #include "scenarios/judge/alignment.h"
-#include "scenarios/judge/trajectory.h"
 
 namespace merlin {
 

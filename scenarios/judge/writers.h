@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "robot/types/trajectory.h"
 #include "scenarios/judge/map_point.h"
-#include "scenarios/judge/trajectory.h"
 
 namespace merlin {
 

@@ -1,17 +1,19 @@
-// Runs a scenario: in the twin, in the twin behind its real drivers and protocols, or on the real car; judges it against the
-// truth where there is one, and leaves its files.
+// Runs a scenario on a robot behind a plug (robot/hal/plug.h): drives, judges against the truth where there is one, and
+// leaves the files.
 #pragma once
 
 #include <atomic>
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 
+#include "robot/hal/plug.h"
+#include "robot/types/gl.h"
 #include "scenarios/config/scenario.h"
 #include "scenarios/judge/result.h"
 #include "scenarios/run/drive_loop.h"
-#include "sim/color/renderer.h"
 
 namespace merlin {
 
@@ -23,8 +25,8 @@ struct RunOptions {
   std::filesystem::path out;
   RobotKind robot = RobotKind::kTwin;
   std::filesystem::path hardware_file{};  // of kHardware
-  sim::Gl gl = sim::Gl::kAuto;            // kOff: depth only
-  int threads = 0;                        // TwinOptions::threads; 0: the twin chooses
+  Gl gl = Gl::kAuto;                      // of the twin; kOff: depth only
+  int threads = 0;                        // of the twin: TwinOptions::threads; 0: the twin chooses
   double pace = 0.0;                      // simulated over wall time not to be exceeded; 0: as fast as it goes
   std::function<void(Time now, double distance_m, const std::string& doing)> progress;  // a few times a second
   Hand hand{};                                                     // of an operator who drives; empty: the pilot does
@@ -41,10 +43,13 @@ struct RunReport {
   std::string note;     // one sentence the user should know; may be empty
 };
 
+// Makes the plug that the options ask for, ready to drive. Throws InputError or MachineError before anything moves.
+using PlugMaker = std::function<std::unique_ptr<Plug>(const RunOptions&)>;
+
 // stop: set from a signal handler; the car stands, files are written, the verdict is kInterrupted.
-// Throws InputError, MachineError (GL missing where the scenario requires colour, disk full) before anything is
-// simulated or written that looks whole. From then on it throws nothing: the car stands, what can still be written is
-// written, the verdict is kFail, and the report holds the error.
-RunReport RunScenario(const RunOptions& options, const std::atomic<bool>& stop);
+// Throws InputError, MachineError (GL missing where the scenario requires colour, disk full) before anything moves or is
+// written that looks whole. From then on it throws nothing: the car stands, what can still be written is written, the
+// verdict is kFail, and the report holds the error.
+RunReport RunScenario(const RunOptions& options, const PlugMaker& make_plug, const std::atomic<bool>& stop);
 
 }  // namespace merlin

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "robot/base/sha256.h"
+#include "robot/types/trajectory.h"
 #include "scenarios/config/scenario.h"
-#include "scenarios/judge/trajectory.h"
 #include "scenarios/run/car_watch.h"
 #include "sim/world/world.h"
 

@@ -8,7 +8,6 @@
 #include "robot/base/error.h"
 #include "robot/base/nearest_name.h"
 #include "robot/description/description.h"
-#include "scenarios/config/calibration.h"
 #include "scenarios/config/hardware_file.h"
 #include "scenarios/config/names.h"
 #include "scenarios/run/truth.h"
@@ -71,31 +70,11 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   return twin;
 }
 
-CarDescription BelievedCar(const CarChoice& choice) {
-  const CarDescription car = ReadCar(CarFile(choice.model));
-  return choice.calibration.empty() ? car : Calibrated(car, ReadCalibration(choice.calibration));
-}
-
-void LeaveOutWhatTheCarLacks(const CarDescription& car, Sensors& sensors, std::vector<std::string>& warnings) {
-  const std::string lacks = fmt::format("the car '{}' has no ", car.name);
-  if (sensors.color && !car.T_base_color) {
-    if (sensors.color->required)
-      throw InputError("sensors.color.required", lacks + "colour camera",
-                       "false, or a car whose mapping names a color_camera_frame");
-    sensors.color.reset();
-    warnings.push_back("depth only: " + lacks + "colour camera");
-  }
-  if (sensors.compass && !car.T_base_compass) {
-    sensors.compass.reset();
-    warnings.push_back("without headings: " + lacks + "compass");
-  }
-}
-
 void MakeWithColor(TwinOptions options, const Scenario& scenario, std::string& note,
                    const std::function<void(const TwinOptions&)>& make) {
   if (!options.color) return make(options);
   const bool required = scenario.sensors.color->required;
-  if (options.color->gl == sim::Gl::kOff) {
+  if (options.color->gl == Gl::kOff) {
     if (required) throw MachineError("this scenario needs the colour camera (sensors.color.required), and --gl is off");
     note = "depth only: --gl is off";
     options.color.reset();
@@ -111,6 +90,19 @@ void MakeWithColor(TwinOptions options, const Scenario& scenario, std::string& n
   }
   options.color.reset();
   make(options);
+}
+
+void RequirePlan(const Scenario& scenario, const sim::World& world) {
+  for (const CheckLimit& check : scenario.checks)
+    if (world.plan_xy_m().empty() &&
+        (check.name.starts_with("map_size") || check.name.starts_with("laps") || check.name.starts_with("coverage")))
+      throw InputError(scenario.room, "no plan", "a numeric plan_xy_m, which the check " + check.name + " needs");
+}
+
+std::vector<std::string> NotesOf(const std::string& without_color, const sim::World& world) {
+  std::vector<std::string> notes = world.warnings();
+  if (!without_color.empty()) notes.insert(notes.begin(), without_color);
+  return notes;
 }
 
 }  // namespace merlin

@@ -1,11 +1,7 @@
 #include "scenarios/run/versions.h"
 
-#include <mujoco/mujoco.h>
-
 #include <Eigen/Core>
 #include <opencv2/core/version.hpp>
-
-#include "sim/rays/embree.h"
 
 namespace merlin {
 
@@ -14,9 +10,10 @@ std::vector<std::pair<std::string, std::string>> Versions() {
     return std::to_string(a) + "." + std::to_string(b) + "." + std::to_string(c);
   };
   return {
-      {"merlin", MERLIN_VERSION},     {"mujoco", mj_versionString()},
-      {"embree", RTC_VERSION_STRING}, {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
-      {"opencv", CV_VERSION},         {"compiler", __VERSION__},
+      {"merlin", MERLIN_VERSION},
+      {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+      {"opencv", CV_VERSION},
+      {"compiler", __VERSION__},
   };
 }
 

@@ -1,4 +1,4 @@
-// Of this program and what it links, for result.json and doctor.
+// Of this program and the libraries that every build of it links, for result.json.
 #pragma once
 
 #include <string>

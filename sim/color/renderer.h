@@ -10,11 +10,12 @@
 #include <string>
 
 #include "robot/types/camera_model.h"
+#include "robot/types/gl.h"
 #include "robot/types/se3.h"
 
 namespace merlin::sim {
 
-enum class Gl { kAuto, kEgl, kOsmesa, kOff };
+using merlin::Gl;
 
 // How far a camera may get from where it is while it exposes.
 struct Sway {

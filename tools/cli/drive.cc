@@ -21,7 +21,7 @@
 #include "robot/description/description.h"
 #include "scenarios/config/names.h"
 #include "scenarios/judge/output_folder.h"
-#include "scenarios/run/run.h"
+#include "scenarios/run/plugs.h"
 #include "tools/cli/run_options.h"
 #include "tools/cli/terminal.h"
 #include "tools/drive/radio_hand.h"

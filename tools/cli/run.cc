@@ -13,7 +13,7 @@
 #include "tools/cli/commands.h"
 #if MERLIN_TWIN
 #include "scenarios/judge/output_folder.h"
-#include "scenarios/run/run.h"
+#include "scenarios/run/plugs.h"
 #include "tools/cli/run_options.h"
 #include "tools/cli/terminal.h"
 #endif
@@ -33,11 +33,11 @@ struct RunArguments {
 
 }  // namespace
 
-sim::Gl GlOf(const std::string& name) {
-  return name == "egl"      ? sim::Gl::kEgl
-         : name == "osmesa" ? sim::Gl::kOsmesa
-         : name == "off"    ? sim::Gl::kOff
-                            : sim::Gl::kAuto;
+Gl GlOf(const std::string& name) {
+  return name == "egl"      ? Gl::kEgl
+         : name == "osmesa" ? Gl::kOsmesa
+         : name == "off"    ? Gl::kOff
+                            : Gl::kAuto;
 }
 
 namespace {

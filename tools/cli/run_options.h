@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "scenarios/run/run.h"
+#include "scenarios/run/plugs.h"
 
 namespace merlin::cli {
 
 // auto, egl, osmesa or off.
-sim::Gl GlOf(const std::string& name);
+Gl GlOf(const std::string& name);
 
 // twin, emulated or hardware:FILE; throws InputError for anything else.
 void SetRobot(const std::string& text, RunOptions& options);

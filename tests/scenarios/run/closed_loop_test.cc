@@ -12,7 +12,7 @@
 #include "robot/twin/twin.h"
 #include "scenarios/config/names.h"
 #include "scenarios/run/drive_loop.h"
-#include "scenarios/run/run.h"
+#include "scenarios/run/plugs.h"
 #include "tests/support/temporary_folder.h"
 
 namespace merlin {
@@ -21,7 +21,7 @@ namespace {
 std::atomic<bool> never{false};
 
 RunReport DriveScenario(const std::string& scenario, const std::filesystem::path& out,
-                        std::vector<std::string> sets = {}, int threads = 2, sim::Gl gl = sim::Gl::kAuto) {
+                        std::vector<std::string> sets = {}, int threads = 2, Gl gl = Gl::kAuto) {
   return RunScenario({.name = scenario,
                       .scenario = ReadScenario(scenario, sets),
                       .out = out,
@@ -59,7 +59,7 @@ TEST(CorridorShort, GivesFiveOtherHashesForAnotherSeed) {
 TEST(CorridorShort, LeavesTheFilesOfARun) {
   const TemporaryFolder folder;
   const auto out = folder.path() / "run";
-  DriveScenario("corridor_short", out, {"duration_s=4"}, 2, sim::Gl::kOff);
+  DriveScenario("corridor_short", out, {"duration_s=4"}, 2, Gl::kOff);
   for (const char* name :
        {"result.json", "junit.xml", "scenario.yaml", "trajectory_estimate.tum", "trajectory_online.tum",
         "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png"})
@@ -72,7 +72,7 @@ TEST(CorridorShort, LeavesTheFilesOfARun) {
 
 TEST(CorridorShort, DrivesOnDepthAloneWithoutGlAndSaysSo) {
   const TemporaryFolder folder;
-  const RunReport report = DriveScenario("corridor_short", folder.path() / "a", {}, 2, sim::Gl::kOff);
+  const RunReport report = DriveScenario("corridor_short", folder.path() / "a", {}, 2, Gl::kOff);
   EXPECT_EQ(report.result.verdict, Verdict::kPass);
   EXPECT_FALSE(report.result.hashes.color);
   EXPECT_NE(report.note.find("depth only"), std::string::npos);
@@ -80,7 +80,7 @@ TEST(CorridorShort, DrivesOnDepthAloneWithoutGlAndSaysSo) {
 
 TEST(CorridorShort, StopsBeforeItStartsWhereColorIsRequiredAndMissing) {
   const TemporaryFolder folder;
-  EXPECT_THROW(DriveScenario("corridor_short", folder.path() / "a", {"sensors.color.required=true"}, 2, sim::Gl::kOff),
+  EXPECT_THROW(DriveScenario("corridor_short", folder.path() / "a", {"sensors.color.required=true"}, 2, Gl::kOff),
                MachineError);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "a"));
 }
@@ -91,7 +91,7 @@ TEST(CorridorShort, EndsInGoodOrderWhenInterrupted) {
   RunOptions options{.name = "corridor_short",
                      .scenario = ReadScenario("corridor_short", {}),
                      .out = folder.path() / "a",
-                     .gl = sim::Gl::kOff,
+                     .gl = Gl::kOff,
                      .threads = 2,
                      .pace = 0.0,
                      .progress = {}};
@@ -119,7 +119,7 @@ int MapPointsIn(const std::filesystem::path& ply, const Eigen::AlignedBox3f& box
 
 TEST(CorridorObstacle, StopsBeforeTheBoxStaysAndDrivesOn) {
   const TemporaryFolder folder;
-  const RunReport report = DriveScenario("corridor_obstacle", folder.path() / "a", {}, 2, sim::Gl::kOff);
+  const RunReport report = DriveScenario("corridor_obstacle", folder.path() / "a", {}, 2, Gl::kOff);
   const Metrics& m = report.result.metrics;
   EXPECT_EQ(report.result.verdict, Verdict::kPass);
   EXPECT_EQ(m.collisions, 0);
@@ -144,7 +144,7 @@ TEST(EmptyBattery, EndsTheRunWithAVerdictThatSaysSo) {
   const TemporaryFolder folder;
   const RunReport report = DriveScenario(
       "corridor_short", folder.path() / "a",
-      {"car.drivetrain.battery.capacity_ah=0.05", "car.drivetrain.battery.charge=0.12", "checks={}"}, 2, sim::Gl::kOff);
+      {"car.drivetrain.battery.capacity_ah=0.05", "car.drivetrain.battery.charge=0.12", "checks={}"}, 2, Gl::kOff);
   EXPECT_EQ(report.result.verdict, Verdict::kFail);
   EXPECT_NE(report.result.fault.find("battery is empty"), std::string::npos) << report.result.fault;
   EXPECT_LT(*report.result.metrics.sim_time_s, 19.0);

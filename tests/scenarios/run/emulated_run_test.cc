@@ -6,7 +6,7 @@
 
 #include "robot/base/error.h"
 #include "scenarios/config/hardware_file.h"
-#include "scenarios/run/run.h"
+#include "scenarios/run/plugs.h"
 #include "tests/support/temporary_folder.h"
 
 namespace merlin {
@@ -20,7 +20,7 @@ RunReport Drive(RobotKind robot, const std::filesystem::path& out, const std::ve
                       .out = out,
                       .robot = robot,
                       .hardware_file = {},
-                      .gl = sim::Gl::kOff,  // drawing in software beside the run would ask a slow machine for too much
+                      .gl = Gl::kOff,  // drawing in software beside the run would ask a slow machine for too much
                       .threads = 2,
                       .pace = 0.0,
                       .progress = {}},

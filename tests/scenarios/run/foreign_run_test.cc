@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "robot/base/error.h"
-#include "scenarios/run/run.h"
+#include "scenarios/run/plugs.h"
 #include "tests/robot/description/foreign_cars.h"
 #include "tests/support/temporary_folder.h"
 
@@ -28,7 +28,7 @@ RunReport Drive(const ForeignCar& files, const std::filesystem::path& out, const
   const Scenario scenario = ReadScenario("corridor_short", {"car.model=" + files.urdf().string(), "duration_s=0.2",
                                                             "checks={}", "sensors.color.required=" + required});
   return RunScenario(
-      {.name = "foreign", .scenario = scenario, .out = out, .gl = sim::Gl::kOff, .pace = 0.0, .progress = {}}, never);
+      {.name = "foreign", .scenario = scenario, .out = out, .gl = Gl::kOff, .pace = 0.0, .progress = {}}, never);
 }
 
 TEST(ForeignRun, GoesWithoutTheSensorsThatTheCarLacksAndSaysSo) {

@@ -11,7 +11,7 @@
 #include "robot/description/description.h"
 #include "robot/twin/twin.h"
 #include "scenarios/run/drive_loop.h"
-#include "scenarios/run/run.h"
+#include "scenarios/run/plugs.h"
 #include "tests/sim/world/car_world.h"
 #include "tests/support/temporary_folder.h"
 
@@ -172,7 +172,7 @@ RunOptions OptionsFor(const std::filesystem::path& room, const std::filesystem::
                                                   "duration_s=" + std::to_string(duration_s)}),
       .out = out,
       .progress = {}};
-  options.gl = sim::Gl::kOff;
+  options.gl = Gl::kOff;
   return options;
 }
 

@@ -9,7 +9,7 @@
 #include "robot/base/error.h"
 #include "robot/description/description.h"
 #include "robot/twin/twin.h"
-#include "scenarios/run/run.h"
+#include "scenarios/run/plugs.h"
 #include "tests/sim/world/car_world.h"
 #include "tests/support/temporary_folder.h"
 
@@ -126,7 +126,7 @@ TEST(Stand, IsTheTwinsAlone) {
                      .scenario = ReadScenario("room_turn_180", {}),
                      .out = folder.path() / "a",
                      .robot = RobotKind::kEmulated,
-                     .gl = sim::Gl::kOff,
+                     .gl = Gl::kOff,
                      .threads = 1,
                      .pace = 0.0,
                      .progress = {}};
@@ -142,7 +142,7 @@ TEST(Stand, MapsTheRoomBehindItsCurtainFromOnePlace) {
   const RunReport report = RunScenario({.name = "room_turn_360_curtain",
                                         .scenario = ReadScenario("room_turn_360_curtain", {}),
                                         .out = folder.path() / "a",
-                                        .gl = sim::Gl::kOff,
+                                        .gl = Gl::kOff,
                                         .threads = 2,
                                         .pace = 0.0,
                                         .progress = {}},

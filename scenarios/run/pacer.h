@@ -1,0 +1,50 @@
+// Holds a run back to the wall's pace, and tells of its progress now and then.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <string>
+#include <thread>
+
+#include "scenarios/run/run.h"
+
+namespace merlin {
+
+using WallClock = std::chrono::steady_clock;
+
+inline double SecondsSince(WallClock::time_point begin) {
+  return std::chrono::duration<double>(WallClock::now() - begin).count();
+}
+
+// Whoever stops reading what we tell does not stop the car.
+template <class Progress>
+void Tell(const Progress& progress) {
+  try {
+    progress();
+  } catch (const std::exception&) {
+  }
+}
+
+class Pacer {
+ public:
+  Pacer(const RunOptions& options, const std::atomic<bool>& stop) : options_(options), stop_(stop) {}
+  void Tick(Time now, double distance_m, const std::string& doing) {
+    while (options_.pace > 0.0 && !stop_.load()) {
+      const double ahead_s = Seconds(now) / options_.pace - SecondsSince(begin_);
+      if (ahead_s <= 0.0) break;
+      std::this_thread::sleep_for(std::chrono::duration<double>(std::min(ahead_s, 0.05)));  // Ctrl-C must not wait
+    }
+    if (!options_.progress || SecondsSince(reported_) < 0.2) return;
+    reported_ = WallClock::now();
+    Tell([&] { options_.progress(now, distance_m, doing); });
+  }
+
+ private:
+  const RunOptions& options_;
+  const std::atomic<bool>& stop_;
+  WallClock::time_point begin_ = WallClock::now(), reported_ = begin_;
+};
+
+}  // namespace merlin
