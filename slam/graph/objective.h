@@ -25,7 +25,7 @@ inline PlanarRotation PlanarRotationIn(Objective objective) {
   return objective == Objective::kA ? PlanarRotation::kChord : PlanarRotation::kAngle;
 }
 
-// The graph's value at its poses, every edge taken as it is, robust or not.
+// The graph's value at its poses.
 double Evaluate(const PoseGraph& graph, Objective objective);
 
 }  // namespace merlin

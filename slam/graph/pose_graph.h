@@ -16,7 +16,6 @@ struct GraphEdge {
   // frame of `to`; symmetric, positive semidefinite. The rotation is 2 sin(angle / 2) times the axis, as g2o has it:
   // the rotation vector for small angles. Of planar graphs x, y and yaw count.
   Matrix6d information = Matrix6d::Identity();
-  bool robust = false;  // may be wrong (a loop closure): bends the map less, the less it agrees with it
 };
 
 struct PoseGraph {
