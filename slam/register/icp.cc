@@ -14,10 +14,6 @@ struct NormalEquations {
   Vector6d b = Vector6d::Zero();
   int pairs = 0, inliers = 0;
   double squares_m2 = 0.0;
-  // Moments of the points, as weighted.
-  double weight = 0.0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
 };
 
 // What of a point is the same in every iteration.
@@ -64,23 +60,9 @@ NormalEquations Linearize(std::span<const Source> points, NearestSearch& search,
     jacobian << n_base, point.p_base.cross(n_base);
     for (int i = 0; i < 6; ++i) equations.H.col(i) += (weight * jacobian(i)) * jacobian;
     equations.b += weight * residual_m * jacobian;
-    equations.weight += weight;
-    equations.sum += weight * point.p_base;
-    equations.squares += (weight * point.p_base) * point.p_base.transpose();
   }
   equations.H = equations.H.selfadjointView<Eigen::Lower>();
   return equations;
-}
-
-// Sum of weight * [I, -Hat(p)]' [I, -Hat(p)].
-PairSums Sums(const NormalEquations& equations) {
-  PairSums sums{.information = equations.H};
-  const Eigen::Matrix3d& squares = equations.squares;
-  sums.whole.topLeftCorner<3, 3>().diagonal().setConstant(equations.weight);
-  sums.whole.topRightCorner<3, 3>() = -Hat(equations.sum);
-  sums.whole.bottomLeftCorner<3, 3>() = Hat(equations.sum);
-  sums.whole.bottomRightCorner<3, 3>() = squares.trace() * Eigen::Matrix3d::Identity() - squares;
-  return sums;
 }
 
 }  // namespace
@@ -89,10 +71,8 @@ RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3
                         const PosePrior& prior, const IcpConfig& config) {
   RegisterResult result;
   result.T_map_base = prior.T_map_base;
-  result.undetermined = FindUndetermined(Shares{});  // so far nothing is held
   const std::vector<Source> points = Prepare(points_base, origin_base);
   NearestSearch search(map, points.size());
-  PairSums geometry;
   bool small_step = false;
   while (result.iterations < config.iterations_max && !small_step) {
     ++result.iterations;
@@ -101,7 +81,6 @@ RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3
     if (equations.inliers < config.inliers_min) return result;
     result.inlier_share = static_cast<double>(equations.inliers) / equations.pairs;
     result.rms_m = std::sqrt(equations.squares_m2 / equations.inliers);
-    geometry = Sums(equations);
     equations.H += prior.information;
     equations.b += prior.information * Log(prior.T_map_base.inverse() * result.T_map_base);
     const Eigen::LDLT<Matrix6d> solver(equations.H);
@@ -111,7 +90,6 @@ RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3
     result.covariance = solver.solve(Matrix6d::Identity());
     small_step = step.norm() < config.step_converged;
   }
-  result.undetermined = FindUndetermined(SplitIntoShares(geometry));
   result.converged = small_step && result.inlier_share >= config.inlier_share_min;
   return result;
 }

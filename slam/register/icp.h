@@ -8,7 +8,6 @@
 #include "robot/base/config.h"
 #include "robot/types/se3.h"
 #include "slam/map/voxel_map.h"
-#include "slam/register/undetermined.h"
 
 namespace merlin {
 
@@ -46,9 +45,6 @@ struct RegisterResult {
   double inlier_share = 0.0;  // of the points that meet the map: what is seen for the first time says nothing
   double rms_m = 0.0;         // of the inliers' point-to-plane distances
   int iterations = 0;
-  // What the pairs alone, without the prior, do not hold, in the base frame: along these the pose is the prior's. All six
-  // where there are too few pairs.
-  Undetermined undetermined{};
   bool converged = false;  // false: the pose is the last iterate and not to be trusted
 };
 

@@ -79,22 +79,6 @@ TEST(Icp, LeavesTheOpenAxisOfABareCorridorToThePrior) {
   EXPECT_LT(std::sqrt(result.covariance(1, 1)), 0.003);
 }
 
-TEST(Icp, SaysWhatTheGeometryAloneDoesNotHold) {
-  PosePrior prior = Guess(Pose::Identity());
-  prior.information = 1e4 * Matrix6d::Identity();  // holds everything, and is not geometry
-  const auto undetermined = [&](const std::vector<Point>& points) {
-    return Register(points, kOrigin, MapOf(points), prior, {}).undetermined;
-  };
-  EXPECT_EQ(undetermined(NoisyCorner(0.005, 1)).count(), 0);
-  const Undetermined corridor = undetermined(NoisyCorner(0.005, 1, true, false));
-  ASSERT_EQ(corridor.count(), 1);
-  EXPECT_GT(std::abs(corridor.directions(0, 0)), 0.99);
-  auto floor = NoisyCorner(0.005, 1, true, false);
-  std::erase_if(floor, [](const Point& point) { return point.position.z() > 0.03f; });
-  EXPECT_EQ(undetermined(floor).count(), 3);
-  EXPECT_EQ(undetermined({}).count(), 6);
-}
-
 TEST(Icp, SaysThatItDidNotConverge) {
   const VoxelMap map = MapOf(NoisyCorner(0.0, 1));
   EXPECT_FALSE(Register({}, kOrigin, map, Guess(Pose::Identity()), {}).converged);
