@@ -9,15 +9,15 @@ namespace {
 
 constexpr Duration kHistory = std::chrono::seconds(1);
 
-// sin(a)/a and (1 - cos(a))/a with their derivatives, by series near zero.
+// sin(a) / a and (1 - cos(a)) / a, by series near zero.
 struct ArcShape {
-  double along, across, d_along, d_across;
+  double along, across;
 };
 
 ArcShape ShapeOf(double a) {
-  if (std::abs(a) < 1e-3) return {1.0 - a * a / 6.0, 0.5 * a, -a / 3.0, 0.5 - a * a / 8.0};
+  if (std::abs(a) < 1e-3) return {1.0 - a * a / 6.0, 0.5 * a};
   const double s = std::sin(a), c = std::cos(a);
-  return {s / a, (1.0 - c) / a, (a * c - s) / (a * a), (a * s - 1.0 + c) / (a * a)};
+  return {s / a, (1.0 - c) / a};
 }
 
 // Exact motion on a circle: path along the rear axle, turned angle.
@@ -36,57 +36,23 @@ double WheelMeanRatio(double wheelbase_m, double track_m, double steering_rad) {
   return 0.5 + 0.25 * (std::hypot(1.0 - t, l) + std::hypot(1.0 + t, l));
 }
 
-Odometry::Odometry(const CarDescription& car, const OdometryConfig& config)
-    : config_(config),
-      wheelbase_m_(car.wheelbase_m),
+Odometry::Odometry(const CarDescription& car)
+    : wheelbase_m_(car.wheelbase_m),
       track_m_(car.track_m),
       metres_per_count_(car.MetresPerCount()),
       steering_offset_rad_(car.steering_offset_rad) {}
 
 void Odometry::Update(const DriveState& state) {
   Pose T_odom_base = knots_.empty() ? Pose::Identity() : knots_.back().T_odom_base;
-  Eigen::Matrix3d covariance = knots_.empty() ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : knots_.back().covariance;
   if (last_) {
     const double steering_rad = 0.5 * (last_->steering_rad + state.steering_rad) + steering_offset_rad_;
     const double wheels_m = metres_per_count_ * static_cast<double>(state.encoder_counts - last_->encoder_counts);
     const double path_m = wheels_m / WheelMeanRatio(wheelbase_m_, track_m_, steering_rad);
-    covariance = Propagate(covariance, Yaw(T_odom_base), path_m, steering_rad);
     T_odom_base = T_odom_base * ArcMotion(path_m, path_m * std::tan(steering_rad) / wheelbase_m_);
   }
   last_ = state;
-  knots_.push_back({state.stamp, T_odom_base, covariance});
+  knots_.push_back({state.stamp, T_odom_base});
   while (knots_.front().stamp + kHistory < state.stamp) knots_.pop_front();
-}
-
-// P' = F P F^T + V Q V^T: F of the pose before, V of path and steering angle (Siegwart, Nourbakhsh, Scaramuzza,
-// "Introduction to autonomous mobile robots", eq. 5.9, for a car).
-Eigen::Matrix3d Odometry::Propagate(const Eigen::Matrix3d& P, double yaw_rad, double path_m,
-                                    double steering_rad) const {
-  const double curvature_1_m = std::tan(steering_rad) / wheelbase_m_;
-  const ArcShape shape = ShapeOf(path_m * curvature_1_m);
-  const Eigen::Matrix2d R = Eigen::Rotation2Dd(yaw_rad).toRotationMatrix();
-  const Eigen::Vector2d step_m = R * (path_m * Eigen::Vector2d(shape.along, shape.across));
-  const Eigen::Vector2d by_path = R * Eigen::Vector2d(shape.along, shape.across);
-  const Eigen::Vector2d by_turn = R * (path_m * Eigen::Vector2d(shape.d_along, shape.d_across));
-
-  Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
-  F.topRightCorner<2, 1>() << -step_m.y(), step_m.x();
-  Eigen::Matrix<double, 3, 2>
-      V;  // columns: path; steering angle, over its path: d(turn) = path / (L cos^2) d(steering)
-  V.col(0) << by_path + by_turn * curvature_1_m, curvature_1_m;
-  V.col(1) << by_turn, 1.0;
-  V.col(1) /= wheelbase_m_ * std::pow(std::cos(steering_rad), 2);
-  const Eigen::Vector2d sigma(config_.path_sigma_m_per_sqrt_m, config_.steering_sigma_rad_sqrt_m);
-  // The mean of white noise over a path has its variance over the path; times the path's square, the path is left.
-  const Eigen::Matrix2d Q = (sigma.cwiseAbs2() * std::abs(path_m)).asDiagonal();
-  return F * P * F.transpose() + V * Q * V.transpose();
-}
-
-std::optional<Eigen::Matrix3d> Odometry::CovarianceAt(Time time) const {
-  if (knots_.empty()) return std::nullopt;
-  const auto after =
-      std::upper_bound(knots_.begin(), knots_.end(), time, [](Time t, const Knot& knot) { return t < knot.stamp; });
-  return (after == knots_.begin() ? after : std::prev(after))->covariance;
 }
 
 std::optional<Pose> Odometry::At(Time time) const {

@@ -14,41 +14,21 @@ namespace merlin {
 // ideal differentials and counts the former. 1 at 0, 1.053 at 25 deg for wheelbase 0.33 m, track 0.26 m; even in the angle.
 double WheelMeanRatio(double wheelbase_m, double track_m, double steering_rad);
 
-// Random errors of the wheels, as white noise along the path: they grow with its root, whatever the rate of the states.
-// What a calibration leaves of the systematic ones is not in it.
-struct OdometryConfig {
-  double path_sigma_m_per_sqrt_m = 0.003;    // [0, 1] of the path: slip, counts; guess
-  double steering_sigma_rad_sqrt_m = 0.002;  // [0, 1] of the steering angle's mean over a metre: play; guess
-};
-
-template <class Visitor>
-void Visit(Visitor& v, OdometryConfig& c) {
-  v("path_sigma_m_per_sqrt_m", c.path_sigma_m_per_sqrt_m, {0.0, 1.0});
-  v("steering_sigma_rad_sqrt_m", c.steering_sigma_rad_sqrt_m, {0.0, 1.0});
-}
-
 class Odometry {
  public:
   // car: as calibrated, if it is.
-  explicit Odometry(const CarDescription& car, const OdometryConfig& config = {});
+  explicit Odometry(const CarDescription& car);
   // States in order of stamps.
   void Update(const DriveState& state);
   // Pose of the car at a time between the oldest and newest state kept (about a second); clamped to these.
   // Nothing before the first state.
   std::optional<Pose> At(Time time) const;
-  // Of x [m], y [m] and yaw [rad] in the odometry's frame, since the first state, to first order; that of the last state
-  // at or before the time.
-  std::optional<Eigen::Matrix3d> CovarianceAt(Time time) const;
 
  private:
   struct Knot {
     Time stamp;
     Pose T_odom_base;
-    Eigen::Matrix3d covariance;
   };
-  Eigen::Matrix3d Propagate(const Eigen::Matrix3d& P, double yaw_rad, double path_m, double steering_rad) const;
-
-  OdometryConfig config_;
   double wheelbase_m_, track_m_, metres_per_count_, steering_offset_rad_;
   std::optional<DriveState> last_;
   std::deque<Knot> knots_;

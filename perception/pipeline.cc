@@ -9,7 +9,7 @@ Pipeline::Pipeline(Rig rig, const PerceptionConfig& config)
     : rig_(std::move(rig)),
       config_(config),
       rays_(PixelRays(rig_.depth.camera)),
-      odometry_(rig_.car, config.odometry),
+      odometry_(rig_.car),
       heading_(config.heading) {}
 
 void Pipeline::Add(const DriveState& state) {

@@ -20,7 +20,6 @@ namespace merlin {
 struct PerceptionConfig {
   DepthFilterConfig filter;
   IntegrationConfig integration;
-  OdometryConfig odometry;
   HeadingConfig heading;
   double color_age_max_s = 0.3;  // [0, 10] older pictures colour no points
 };
@@ -29,7 +28,6 @@ template <class Visitor>
 void Visit(Visitor& v, PerceptionConfig& c) {
   v("filter", c.filter);
   v("integration", c.integration);
-  v("odometry", c.odometry);
   v("heading", c.heading);
   v("color_age_max_s", c.color_age_max_s, {0.0, 10.0});
 }

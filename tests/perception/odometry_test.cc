@@ -86,67 +86,6 @@ TEST(Odometry, AddsTheSteeringOffsetToWhatTheServoReports) {
   EXPECT_TRUE(with.At(FromSeconds(2.0))->isApprox(*without.At(FromSeconds(2.0)), 1e-12));
 }
 
-// Many drives whose paths and angles err as the config says, each driven exactly, beside what the filter says of one.
-TEST(OdometryCovariance, IsWhatManyErringDrivesScatterBy) {
-  constexpr int kDrives = 4000, kSteps = 60;
-  const OdometryConfig config{.path_sigma_m_per_sqrt_m = 0.01, .steering_sigma_rad_sqrt_m = 0.01};
-  const auto steering_rad = [](int step) { return step < 20 ? 0.3 : step < 40 ? 0.0 : -0.2; };  // an S
-  const double per_step_m = 0.05;
-  Odometry odometry(Car(), config);
-  double counts = 0.0;
-  odometry.Update(State(0.0, 0.0, steering_rad(0)));
-  for (int i = 0; i < kSteps; ++i) {
-    counts += per_step_m * WheelMeanRatio(0.33, 0.26, steering_rad(i)) / Car().MetresPerCount();
-    odometry.Update(State(0.01 * (i + 1), counts, steering_rad(i)));
-  }
-  std::mt19937_64 generator(1);
-  std::normal_distribution<double> normal;
-  std::vector<Eigen::Vector3d> ends;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (int drive = 0; drive < kDrives; ++drive) {
-    double x = 0.0, y = 0.0, yaw = 0.0;
-    for (int i = 0; i < kSteps; ++i) {
-      const double path_m = per_step_m + config.path_sigma_m_per_sqrt_m * std::sqrt(per_step_m) * normal(generator);
-      const double angle_rad =
-          steering_rad(i) + config.steering_sigma_rad_sqrt_m / std::sqrt(per_step_m) * normal(generator);
-      const double turn_rad = path_m * std::tan(angle_rad) / 0.33;
-      x += path_m * std::cos(yaw + 0.5 * turn_rad);
-      y += path_m * std::sin(yaw + 0.5 * turn_rad);
-      yaw += turn_rad;
-    }
-    ends.emplace_back(x, y, yaw);
-    mean += ends.back() / kDrives;
-  }
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& end : ends) scatter += (end - mean) * (end - mean).transpose() / kDrives;
-  const Eigen::Matrix3d P = *odometry.CovarianceAt(FromSeconds(1.0));
-  // 10 %: four sigmas of the variance of that many drives, and what is beyond first order.
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      EXPECT_NEAR(P(i, j), scatter(i, j), 0.1 * std::sqrt(scatter(i, i) * scatter(j, j))) << i << ", " << j;
-}
-
-// Straight ahead by hand: s^2 of the path along, and across the integral of the yaw's random walk.
-TEST(OdometryCovariance, IsTheRandomWalksOnAStraightLine) {
-  const OdometryConfig config{.path_sigma_m_per_sqrt_m = 0.02, .steering_sigma_rad_sqrt_m = 0.01};
-  Odometry odometry(Car(), config);
-  const double way_m = 4.0;
-  for (int i = 0; i <= 1000; ++i) odometry.Update(State(1e-4 * i, i * way_m / 1000.0 / Car().MetresPerCount(), 0.0));
-  const Eigen::Matrix3d P = *odometry.CovarianceAt(FromSeconds(1.0));
-  const double turn = 0.01 / 0.33;
-  EXPECT_NEAR(P(0, 0), 0.02 * 0.02 * way_m, 1e-3 * P(0, 0));
-  EXPECT_NEAR(P(2, 2), turn * turn * way_m, 1e-3 * P(2, 2));
-  EXPECT_NEAR(P(1, 1), turn * turn * std::pow(way_m, 3) / 3.0, 5e-3 * P(1, 1));
-  EXPECT_NEAR(P(1, 2), turn * turn * way_m * way_m / 2.0, 5e-3 * P(1, 2));
-}
-
-TEST(OdometryCovariance, IsZeroAtRestAndAtTheStart) {
-  Odometry odometry(Car());
-  EXPECT_FALSE(odometry.CovarianceAt(Time{0}));
-  for (int i = 0; i < 50; ++i) odometry.Update(State(0.02 * i, 5.0, 0.3));
-  EXPECT_EQ(odometry.CovarianceAt(FromSeconds(0.5))->norm(), 0.0);
-}
-
 TEST(Heading, IsUnknownBeforeTheFirstReading) { EXPECT_TRUE(std::isinf(Heading({}).Sigma_rad(Time{0}, 0.0))); }
 
 TEST(Heading, AveragesReadingsAtRestAsIndependentOnesAcrossPi) {
