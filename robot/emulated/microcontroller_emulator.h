@@ -23,8 +23,8 @@ struct EmulatedCar {
 };
 
 struct MicrocontrollerEmulatorConfig {
-  double state_rate_hz = 50.0;  // [1, 200]; 26 bytes each
-  double battery_low_v = 10.8;  // [0, 60]; below it a state says so; 0.9 of 12 V (guess)
+  double state_rate_hz = microcontroller::kStateRate_hz;  // [1, 200]
+  double battery_low_v = 10.8;                            // [0, 60]; below it a state says so; 0.9 of 12 V (guess)
   std::string firmware = "merlin emulator 1";
 };
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "robot/hal/device_status.h"
+#include "robot/types/device_status.h"
 #include "robot/types/depth_camera.h"
 #include "robot/types/se3.h"
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "robot/hal/device_status.h"
+#include "robot/types/device_status.h"
 #include "robot/types/measurements.h"
 
 namespace merlin {

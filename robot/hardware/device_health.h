@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "robot/hal/device_status.h"
+#include "robot/types/device_status.h"
 
 namespace merlin {
 

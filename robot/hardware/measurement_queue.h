@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "robot/hal/device_status.h"
+#include "robot/types/device_status.h"
 
 namespace merlin {
 

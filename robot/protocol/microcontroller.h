@@ -18,6 +18,7 @@
 namespace merlin::microcontroller {
 
 inline constexpr Duration kWatchdog = std::chrono::milliseconds(150);
+inline constexpr double kStateRate_hz = 50.0;  // at which it sends a State unasked; 26 bytes each
 
 // Asks for a HelloReply.
 struct Hello {

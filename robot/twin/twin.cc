@@ -19,7 +19,8 @@ namespace {
 // The k-th sampling instant of a rate, on the grid of physics steps.
 class Schedule {
  public:
-  explicit Schedule(double rate_hz) : period_s_(1.0 / rate_hz) {}
+  explicit Schedule(double rate_hz) : rate_hz_(rate_hz), period_s_(1.0 / rate_hz) {}
+  double rate_hz() const { return rate_hz_; }
   bool Due(Time now) {
     const Time next = FromSeconds(static_cast<double>(count_) * period_s_);
     if (now < next) return false;
@@ -28,7 +29,7 @@ class Schedule {
   }
 
  private:
-  double period_s_;
+  double rate_hz_, period_s_;
   std::uint64_t count_ = 0;
 };
 
@@ -73,7 +74,7 @@ class TwinDepth final : public DepthCamera {
     settings_ = settings;
   }
   std::optional<DepthFrame> Poll() override { return outbox_.Take(now_); }
-  DeviceStatus Status() const override { return outbox_.status(); }
+  DeviceStatus Status() const override { return WithRate(outbox_.status(), schedule_.rate_hz()); }
 
  private:
   DepthCameraInfo info_;
@@ -123,7 +124,7 @@ class TwinColor final : public ColorCamera {
     settings_ = settings;
   }
   std::optional<ColorFrame> Poll() override { return outbox_.Take(now_); }
-  DeviceStatus Status() const override { return outbox_.status(); }
+  DeviceStatus Status() const override { return WithRate(outbox_.status(), schedule_.rate_hz()); }
 
  private:
   ColorCameraInfo info_;
@@ -146,7 +147,7 @@ class TwinCompass final : public Compass {
     if (schedule_.Due(now_)) outbox_.Put(now_, sim::ReadCompass(world.T_world_base(), config_, seed_, now_, index_++));
   }
   std::optional<CompassReading> Poll() override { return outbox_.Take(now_); }
-  DeviceStatus Status() const override { return outbox_.status(); }
+  DeviceStatus Status() const override { return WithRate(outbox_.status(), schedule_.rate_hz()); }
 
  private:
   sim::CompassConfig config_;
@@ -167,7 +168,7 @@ class TwinDrive final : public Drive {
   }
   void Send(const DriveCommand& command) override { world_.drive().Send(command, world_.Now()); }
   std::optional<DriveState> Poll() override { return outbox_.Take(world_.Now()); }
-  DeviceStatus Status() const override { return outbox_.status(); }
+  DeviceStatus Status() const override { return WithRate(outbox_.status(), schedule_.rate_hz()); }
 
  private:
   sim::World& world_;
@@ -186,7 +187,7 @@ class TwinTurn final : public PanUnit {
   }
   void Send(double angle_rad) override { send_(angle_rad); }
   std::optional<PanState> Poll() override { return outbox_.Take(world_.Now()); }
-  DeviceStatus Status() const override { return outbox_.status(); }
+  DeviceStatus Status() const override { return WithRate(outbox_.status(), schedule_.rate_hz()); }
 
  private:
   const sim::World& world_;

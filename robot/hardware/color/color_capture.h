@@ -56,7 +56,7 @@ class ColorCapture final : public ColorCamera {
   // share, and a stream cannot be told anything: there the frames' settings are what was asked for.
   void Configure(const ColorSettings& settings) override;
   std::optional<ColorFrame> Poll() override { return mailbox_.Take(); }
-  DeviceStatus Status() const override { return mailbox_.Status(clock_.Now()); }
+  DeviceStatus Status() const override { return WithRate(mailbox_.Status(clock_.Now()), info_.rate_hz); }
 
  private:
   void Run(std::stop_token stop);

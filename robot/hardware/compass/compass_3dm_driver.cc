@@ -24,7 +24,7 @@ std::optional<CompassReading> Compass3dmDriver::Poll() {
 
 DeviceStatus Compass3dmDriver::Status() const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->host.readings.Counted(impl_->host.status());
+  return WithRate(impl_->host.readings.Counted(impl_->host.status()), impl_->host.rate_hz());
 }
 
 std::string Compass3dmDriver::Complaint() const {

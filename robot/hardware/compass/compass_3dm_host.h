@@ -37,6 +37,7 @@ class Compass3dmHost : public HostEnd {
 
   MeasurementQueue<CompassReading> readings;
   const DeviceStatus& status() const { return health_.status(); }
+  double rate_hz() const { return 1.0 / config_.poll.period_s; }  // of readings
   // What is wrong, for people; empty if nothing is.
   std::string Complaint() const;
 

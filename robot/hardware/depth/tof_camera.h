@@ -44,7 +44,7 @@ class TofCamera final : public DepthCamera {
   // The maker's post-processing and raw data have no calls that every camera shares: both are refused.
   void Configure(const DepthSettings& settings) override;
   std::optional<DepthFrame> Poll() override { return mailbox_.Take(); }
-  DeviceStatus Status() const override { return mailbox_.Status(clock_.Now()); }
+  DeviceStatus Status() const override { return WithRate(mailbox_.Status(clock_.Now()), info_.rate_hz); }
   std::string Complaint() const;  // why the last call of the library failed; empty if a frame came since
 
  private:

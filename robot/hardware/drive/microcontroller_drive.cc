@@ -29,7 +29,7 @@ struct MicrocontrollerDrive::Impl : PanUnit {
   }
   DeviceStatus Status() const override {
     const std::lock_guard lock(mutex);
-    DeviceStatus status = host.pan_states.Counted(host.status());
+    DeviceStatus status = WithRate(host.pan_states.Counted(host.status()), microcontroller::kStateRate_hz);
     if (!host.has_pan()) status.health = DeviceStatus::Health::kAbsent;
     return status;
   }
@@ -54,7 +54,7 @@ std::optional<DriveState> MicrocontrollerDrive::Poll() {
 
 DeviceStatus MicrocontrollerDrive::Status() const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->host.states.Counted(impl_->host.status());
+  return WithRate(impl_->host.states.Counted(impl_->host.status()), microcontroller::kStateRate_hz);
 }
 
 PanUnit& MicrocontrollerDrive::pan() { return *impl_; }
