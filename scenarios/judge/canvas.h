@@ -8,7 +8,7 @@
 
 namespace merlin {
 
-enum class Align { kLeft, kMiddle, kRight };
+enum class TextAlign { kLeft, kMiddle, kRight };
 
 inline const cv::Scalar kInk(45, 40, 38);  // of text and axes; blue, green, red
 
@@ -21,9 +21,12 @@ class Canvas {
   void Line(const std::vector<Eigen::Vector2d>& points_px, double width_px, const cv::Scalar& color,
             bool closed = false);
   void Dot(const Eigen::Vector2d& p_px, double radius_px, const cv::Scalar& color);
+  // A point of a cloud: a square, quicker than a dot.
+  void Speck(const Eigen::Vector2d& p_px, double edge_px, const cv::Scalar& color);
   // ASCII text on its base line; size_px: height of capitals.
   void Text(const Eigen::Vector2d& p_px, const std::string& text, double size_px, const cv::Scalar& color,
-            Align align = Align::kLeft, bool bold = false);
+            TextAlign align = TextAlign::kLeft, bool bold = false);
+  static double TextWidth_px(const std::string& text, double size_px);  // of text that is not bold
   // An 8-bit BGR picture, each of its pixels as a square of this many.
   void Picture(const Eigen::Vector2d& corner_px, const cv::Mat& bgr, int scale);
 

@@ -1,4 +1,4 @@
-#include "tools/camera/canvas.h"
+#include "scenarios/judge/canvas.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,14 @@
 namespace merlin {
 namespace {
 
-constexpr int kOversample = 2;
-constexpr int kShift = 4;  // fractional bits of OpenCV's drawing coordinates
+constexpr int kOversample = 2;  // drawn this many times as large and averaged down
+constexpr int kShift = 4;       // fractional bits of OpenCV's drawing coordinates
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
 double FontScale(double size_px) { return size_px * kOversample / 21.0; }  // Hershey capitals are 21 units high
 
 cv::Point Fixed(const Eigen::Vector2d& p_px) {
-  const Eigen::Vector2d fixed = (p_px * kOversample * (1 << kShift)).cwiseMax(-1e7).cwiseMin(1e7);
+  const Eigen::Vector2d fixed = (p_px * kOversample * (1 << kShift)).cwiseMax(-1e8).cwiseMin(1e8);
   return {static_cast<int>(std::lround(fixed.x())), static_cast<int>(std::lround(fixed.y()))};
 }
 
@@ -43,15 +43,28 @@ void Canvas::Dot(const Eigen::Vector2d& p_px, double radius_px, const cv::Scalar
   cv::circle(image_, Fixed(p_px), radius, color, cv::FILLED, cv::LINE_AA, kShift);
 }
 
+void Canvas::Speck(const Eigen::Vector2d& p_px, double edge_px, const cv::Scalar& color) {
+  const int edge = std::max(1, static_cast<int>(std::lround(edge_px * kOversample)));
+  const Eigen::Vector2d corner_px = p_px * kOversample - Eigen::Vector2d::Constant(edge / 2);
+  const cv::Point corner(static_cast<int>(std::lround(corner_px.x())), static_cast<int>(std::lround(corner_px.y())));
+  image_(cv::Rect(corner, cv::Size(edge, edge)) & cv::Rect({}, image_.size())).setTo(color);
+}
+
 void Canvas::Text(const Eigen::Vector2d& p_px, const std::string& text, double size_px, const cv::Scalar& color,
-                  Align align, bool bold) {
+                  TextAlign align, bool bold) {
   const int width = (bold ? 2 : 1) * kOversample;
   int base_line = 0;
   const cv::Size size = cv::getTextSize(text, kFont, FontScale(size_px), width, &base_line);
-  const double share = align == Align::kLeft ? 0.0 : align == Align::kMiddle ? 0.5 : 1.0;
+  const double share = align == TextAlign::kLeft ? 0.0 : align == TextAlign::kMiddle ? 0.5 : 1.0;
   const cv::Point start(static_cast<int>(std::lround(p_px.x() * kOversample - share * size.width)),
                         static_cast<int>(std::lround(p_px.y() * kOversample)));
   cv::putText(image_, text, start, kFont, FontScale(size_px), color, width, cv::LINE_AA);
+}
+
+double Canvas::TextWidth_px(const std::string& text, double size_px) {
+  int base_line = 0;
+  const cv::Size size = cv::getTextSize(text, kFont, FontScale(size_px), kOversample, &base_line);
+  return size.width / static_cast<double>(kOversample);
 }
 
 void Canvas::Picture(const Eigen::Vector2d& corner_px, const cv::Mat& bgr, int scale) {
