@@ -77,7 +77,7 @@ std::string ProblemWith(const MeasuredDrives& drives) {
 }
 
 std::string Undetermined(const Unknowns& sigma) {
-  if (!(sigma[0] < kRadiusSigma)) return "the drives do not determine the wheel radius: drive a longer straight way";
+  if (!(sigma[0] < kRadiusSigma)) return "the drives do not determine the wheel radius: drive a longer straight line";
   if (!(sigma[1] < kWheelbaseSigma)) return "the drives do not determine the wheelbase: drive more and tighter circles";
   if (!(sigma[2] < kOffsetSigma_rad)) return "the drives do not determine the steering offset: drive more circles";
   return "";

@@ -86,7 +86,8 @@ void Heading::Update(Time stamp, double compass_yaw_rad, double odometry_yaw_rad
   odometry_yaw_rad_ = odometry_yaw_rad;
 }
 
-// Exponential average of the differences and its variance, were they noise: measured over their number, and the filter's own.
+// Exponential average of the differences and its variance, were they noise: measured over their number, and the
+// filter's own.
 bool Heading::IsBent(Time stamp, double difference_rad, double measured_variance) {
   const double share = 1.0 - std::exp(-std::max(0.0, Seconds(stamp - stamp_)) / config_.bend_memory_s);
   difference_rad_ += share * (difference_rad - difference_rad_);

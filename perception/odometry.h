@@ -11,7 +11,8 @@
 namespace merlin {
 
 // How much farther the mean of the four wheels rolls than the rear axle's middle, on a circle: the encoder sits behind
-// ideal differentials and counts the former. 1 at 0, 1.053 at 25 deg for wheelbase 0.33 m, track 0.26 m; even in the angle.
+// ideal differentials and counts the former. 1 at 0, 1.053 at 25 deg for wheelbase 0.33 m, track 0.26 m; even in the
+// angle.
 double WheelMeanRatio(double wheelbase_m, double track_m, double steering_rad);
 
 class Odometry {
@@ -35,8 +36,8 @@ class Odometry {
 };
 
 // The heading: compass (absolute, noisy) and odometry (smooth, drifting) as a Kalman filter of one state, the angle
-// between the odometry's frame and the world. Readings that differ from what the wheels lead to expect, all to one side and
-// more than noise would, come from a field that steel bends: they are left out until they agree again.
+// between the odometry's frame and the world. Readings that differ from what the wheels lead to expect, all to one side
+// and more than noise would, come from a field that steel bends: they are left out until they agree again.
 struct HeadingConfig {
   double compass_sigma_rad = 0.0175;     // [0.001, 1] of one reading; 1 deg: noise 0.3-1 deg, guess of the data sheet
   double drift_per_turn = 0.01;          // [0, 1] odometry's yaw error per rad turned; guess
