@@ -6,7 +6,7 @@
 //   DepthFrame                filter/depth_filter, project             points in the base frame, each with its sigma
 //   ColorFrame                fuse                                     their colours
 //   DriveState                odometry                                 T_odom_base
-//   CompassReading            odometry (Heading)                       yaw in the world, with its sigma
+//   CompassReading            heading                                  yaw in the world, with its sigma
 //   PanState, turntable       angle_track                              where the camera points, where the car is turned
 #pragma once
 
@@ -16,6 +16,7 @@
 #include "perception/angle_track.h"
 #include "perception/filter/depth_filter.h"
 #include "perception/fuse.h"
+#include "perception/heading.h"
 #include "perception/integration_time.h"
 #include "perception/observation.h"
 #include "perception/odometry.h"
@@ -48,8 +49,8 @@ struct Rig {
   Pose T_base_depth = Pose::Identity();
   std::optional<ColorCameraSheet> color;  // none: no colour
   Pose T_base_color = Pose::Identity();
-  bool pans = false;      // a pan unit turns the cameras; their poses above are those at its angle zero
-  bool on_stand = false;  // the car is on a turntable, whose turn the wheels do not measure
+  bool pans = false;          // a pan unit turns the cameras; their poses above are those at its angle zero
+  bool on_turntable = false;  // the car is on a turntable, whose turn the wheels do not measure
 };
 
 class Pipeline {
@@ -60,7 +61,7 @@ class Pipeline {
   void Add(const CompassReading& reading);
   void Add(ColorFrame frame);
   void AddPan(const PanState& state) { pan_.Add(state); }
-  void AddStand(const PanState& state) { stand_.Add(state); }
+  void AddTurntable(const PanState& state) { turntable_.Add(state); }
   // Nothing before the first reading of the wheels, and of pan unit and turntable where the car has them.
   std::optional<Observation> Process(DepthFrame frame);
 
@@ -73,7 +74,7 @@ class Pipeline {
   std::vector<Eigen::Vector3f> rays_;
   Odometry odometry_;
   Heading heading_;
-  AngleTrack pan_, stand_;
+  AngleTrack pan_, turntable_;
   std::optional<ColorFrame> color_;
 };
 

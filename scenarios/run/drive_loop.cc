@@ -22,7 +22,7 @@ Rig RigOf(const Robot& robot, const CarDescription& car) {
     rig.T_base_color = robot.color->Info().T_base_camera;
   }
   rig.pans = robot.pan != nullptr && car.pan;
-  rig.on_stand = robot.stand != nullptr;
+  rig.on_turntable = robot.stand != nullptr;
   return rig;
 }
 
@@ -70,7 +70,7 @@ void DriveLoop::Listen(const LoopObserver& observer) {
     status_.state = *state;
   }
   while (const auto state = Poll("pan unit", robot_.pan)) pipeline_.AddPan(*state);
-  while (const auto state = Poll("stand", robot_.stand)) pipeline_.AddStand(*state);
+  while (const auto state = Poll("stand", robot_.stand)) pipeline_.AddTurntable(*state);
   while (const auto reading = Poll("compass", robot_.compass)) pipeline_.Add(*reading);
   while (auto frame = Poll("colour camera", robot_.color)) {
     if (observer.color) observer.color(*frame);

@@ -47,7 +47,7 @@ Rig RigOf(const Robot& robot) {
           .T_base_depth = depth.T_base_camera,
           .color = std::nullopt,
           .pans = robot.pan != nullptr,
-          .on_stand = robot.stand != nullptr};
+          .on_turntable = robot.stand != nullptr};
 }
 
 // Runs for a while and gives every observation to see.
@@ -67,7 +67,7 @@ void Watch(Twin& twin, double seconds, const See& see) {
     while (robot.stand) {
       const auto state = robot.stand->Poll();
       if (!state) break;
-      pipeline.AddStand(*state);
+      pipeline.AddTurntable(*state);
     }
     while (auto frame = robot.depth->Poll())
       if (const auto observation = pipeline.Process(*frame)) see(*observation);
