@@ -191,7 +191,7 @@ TEST(MovedAway, KeepsWallsOfTwoVisitsThatDoNotQuiteAgree) {
 }
 
 // However little it was seen: two may err.
-TEST(MovedAway, WantsThreeSightsThatLookThrough) {
+TEST(MovedAway, NeedsThreeViewsThroughAVoxel) {
   Camera camera;
   VoxelMap map({.voxel_m = 0.04});
   map.Insert(std::vector<Point>{{.position = {3.0f, 0.02f, 0.5f}, .sigma_m = 0.01f}}, Pose::Identity(), 0.0);
@@ -228,7 +228,7 @@ TEST(MovedAway, KeepsWhatPixelsThatDoNotTellStandFor) {
 }
 
 // The same frames as views of one key frame far away, in another order, are the same evidence.
-TEST(MovedAway, AsksSightsWhereTheyWereAndInTheOrderOfTime) {
+TEST(MovedAway, TakesViewsWhereTheyWereInTheOrderOfTime) {
   Camera camera;
   std::vector<Keyframe> keyframes;
   VoxelMap map({.voxel_m = 0.04});
