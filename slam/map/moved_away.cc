@@ -9,11 +9,11 @@
 namespace merlin {
 namespace {
 
-constexpr float kBlock_m = 1.0f;       // edge of the square columns of voxels that are tested for visibility together
-constexpr float kFloor_m = 0.06f;      // points up to this height may be floor
-constexpr int kMost = 2, kLeast = -3;  // bounds of a voxel's evidence
-constexpr float kGrazing = 0.15f;      // cosine; below it the error of a pose shows what is behind the surface
-constexpr float kGrazingDark = 0.3f;   // cosine; below it dark surfaces return too little. Black rubber: albedo 0.07
+constexpr float kBlock_m = 1.0f;         // edge of the square columns of voxels that are tested for visibility together
+constexpr float kFloor_m = 0.06f;        // points up to this height may be floor
+constexpr int kMost = 2, kLeast = -3;    // bounds of a voxel's evidence
+constexpr float kObliqueMin = 0.15f;     // cosine; below it the error of a pose shows what is behind the surface
+constexpr float kObliqueDarkMin = 0.3f;  // cosine; below it dark surfaces return too little. Black rubber: albedo 0.07
 constexpr float kRange_m = 0.05f, kRangeShare = 0.03f, kPose_m = 0.05f;  // errors; guess
 constexpr float kBody_m = 0.04f;  // the error of a pose, by which the car is taken narrower than its footprint
 constexpr float kReach_m = 0.1f;  // of the car's middle, to the front and rear: the distance of two key frames
@@ -23,12 +23,13 @@ enum class Finding { kNothing, kOccupied, kFree };
 // Cosine of the angle between a surface's normal and the ray to it. Without a normal the surface counts as facing the
 // camera, unless it may be floor.
 float CosineOf(const Eigen::Vector3f& normal, const Eigen::Vector3f& ray, const Eigen::Vector3f& point_map) {
-  if (normal.isZero()) return point_map.z() < kFloor_m ? 0.0f : kGrazingDark;
+  if (normal.isZero()) return point_map.z() < kFloor_m ? 0.0f : kObliqueDarkMin;
   return std::abs(normal.dot(ray)) / ray.norm();
 }
 
 Finding Find(const ClearView::Reach& reach, float range_m, float cosine) {
-  if (reach.length_m == 0.0f || cosine < kGrazing || (reach.dark && cosine < kGrazingDark)) return Finding::kNothing;
+  if (reach.length_m == 0.0f || cosine < kObliqueMin || (reach.dark && cosine < kObliqueDarkMin))
+    return Finding::kNothing;
   const float margin_m = kRange_m + kRangeShare * range_m + kPose_m / cosine;
   if (reach.length_m > range_m + margin_m) return Finding::kFree;
   return !reach.dark && reach.length_m >= range_m - margin_m ? Finding::kOccupied : Finding::kNothing;
