@@ -7,7 +7,7 @@
 
 #include "robot/base/error.h"
 
-namespace merlin::cli {
+namespace merlin {
 
 // Throws InputError for a file that cannot be read, or that goes on beyond 1 GB (a device); what: "a pose graph (g2o)".
 inline std::string ReadFile(const std::string& file, const std::string& what) {
@@ -23,4 +23,4 @@ inline std::string ReadFile(const std::string& file, const std::string& what) {
   return text;
 }
 
-}  // namespace merlin::cli
+}  // namespace merlin

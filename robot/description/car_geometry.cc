@@ -425,14 +425,19 @@ Drivetrain ReadDrivetrain(const UrdfSource& source) {
         fmt::format("the car needs an element <drivetrain .../> under <robot>, or a map 'drivetrain' in {}",
                     MappingFile(source.path).filename().string()));
   const std::string where = fmt::format("{}:{}", source.path.string(), element->Row());
-  return DrivetrainOf(where, "<drivetrain>", [&](const char* name) {
-    double value = 0.0;
-    const int status = element->QueryDoubleAttribute(name, &value);
+  Drivetrain drivetrain;
+  EachDrivetrainNumber(drivetrain, [&]<class T>(const char* name, T& value, Range range) {
+    double number = 0.0;
+    const int status = element->QueryDoubleAttribute(name, &number);
+    const std::string what = fmt::format("<drivetrain> '{}'", name);
     if (status == TIXML_NO_ATTRIBUTE) throw InputError(where, fmt::format("<drivetrain> needs '{}'", name));
-    if (status != TIXML_SUCCESS || !(value > 0.0) || !std::isfinite(value))
-      throw InputError(where, fmt::format("<drivetrain> '{}'", name), "a positive number", element->Attribute(name));
-    return value;
+    if (status != TIXML_SUCCESS || !(number > 0.0) || !std::isfinite(number))
+      throw InputError(where, what, "a positive number", element->Attribute(name));
+    if (std::is_integral_v<T> && (number != std::floor(number) || number > range.max))
+      throw InputError(where, what, fmt::format("a whole number up to {:.0f}", range.max), element->Attribute(name));
+    value = static_cast<T>(number);
   });
+  return drivetrain;
 }
 
 void DeriveGeometry(const UrdfSource& source, const CarMapping& mapping, CarDescription& car) {

@@ -73,12 +73,17 @@ TEST(Scenario, ReportsEveryValueOutOfRangeAtOnce) {
 
 TEST(Scenario, TellsWhatIsWrongWithTheFile) {
   EXPECT_TRUE(Has(Complaint("room: [hall\n"), "s.yaml:2: broken YAML"));
-  EXPECT_TRUE(Has(Complaint(""), "no scenario"));
-  EXPECT_TRUE(Has(Complaint("- a\n"), "no scenario"));
-  EXPECT_TRUE(Has(Complaint("seed: 1\n"), "room: missing"));
+  EXPECT_TRUE(Has(Complaint(""), "holds no map of keys; expected a scenario"));
+  EXPECT_TRUE(Has(Complaint("- a\n"), "holds no map of keys; expected a scenario"));
+  EXPECT_TRUE(Has(Complaint("seed: 1\n"), "s.yaml:1: missing key 'room'"));
   EXPECT_TRUE(Has(Complaint("room: hall\ncar: 5\n"), "s.yaml:2: car: expected a map"));
   EXPECT_TRUE(Has(Complaint("room: hall\nchecks: {collision_max: 0}\n"), "collisions_max"));
-  EXPECT_TRUE(Has(Complaint("room: hall\ntask: {behavior: follow_coridor}\n"), "did you mean 'follow_corridor'?"));
+  EXPECT_TRUE(Has(Complaint("room: hall\ntask: {behavior: follow_coridor}\n"),
+                  "s.yaml:2: task.behavior: unknown behavior 'follow_coridor'; did you mean 'follow_corridor'?"));
+  EXPECT_TRUE(Has(Complaint("room: hall\nobstacles:\n  - {}\n  - {appear_s: 5,\n     disappear_s: 5}\n"),
+                  "s.yaml:5: obstacles[1].disappear_s: expected a time after its appear_s"));
+  EXPECT_TRUE(
+      Has(Complaint("room: hall\nchecks: {laps_min: 1, laps_min: 2}\n"), "s.yaml:2: checks.laps_min: given twice"));
 }
 
 TEST(Scenario, TakesNumbersAsTypedAndNoKeyTwice) {
@@ -97,7 +102,7 @@ TEST(Scenario, KnowsAnOpenAndAClosedCurtain) {
   EXPECT_EQ(ReadScenario(file.string(), {}).curtain, "open");
   EXPECT_EQ(ReadScenario(file.string(), {"curtain=closed"}).curtain, "closed");
   EXPECT_TRUE(Has(ToYaml(ReadScenario(file.string(), {"curtain=closed"})), "curtain: closed"));
-  EXPECT_TRUE(Has(Complaint("room: hall\ncurtain: shut\n"), "curtain: expected open or closed, got 'shut'"));
+  EXPECT_TRUE(Has(Complaint("room: hall\ncurtain: shut\n"), "s.yaml:2: curtain: expected open or closed, got 'shut'"));
   EXPECT_TRUE(Has(Complaint("room: hall\ncurtain: [open]\n"), "s.yaml:2: curtain: expected a text"));
 }
 
@@ -113,7 +118,7 @@ TEST(Scenario, SetsOverrideTheFileAndAreCheckedAlike) {
   EXPECT_EQ(Complaint("room: hall\n", {"pilot.speed_m_s=0.3", "sensors.compass.rate_hz=5"}), "");
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.sped_m_s=0.3"}), "did you mean 'speed_m_s'?"));
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.speed_m_s=fast"}),
-                  "--set: pilot.speed_m_s: expected a number, got 'fast'"));
+                  "--set: pilot.speed_m_s: expected a number in [0.05, 2], got 'fast'"));
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot"}), "not an assignment"));
   EXPECT_TRUE(Has(Complaint("room: hall\nseed: 3\n", {"seed.x=1"}), "has no keys below it"));
   const TemporaryFolder folder;
