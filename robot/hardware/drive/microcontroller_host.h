@@ -6,7 +6,7 @@
 
 #include "robot/hal/pan_unit.h"
 #include "robot/hardware/device_health.h"
-#include "robot/hardware/measurement_queue.h"
+#include "robot/hal/measurement_queue.h"
 #include "robot/hardware/serial/serial_thread.h"
 #include "robot/protocol/least_delay.h"
 #include "robot/protocol/microcontroller.h"
