@@ -3,8 +3,9 @@
 #include <algorithm>
 
 #include "robot/base/error.h"
+#include "robot/base/files.h"
 #include "robot/base/nearest_name.h"
-#include "robot/base/read_file.h"
+#include "robot/base/text_fields.h"
 
 namespace merlin {
 namespace {
@@ -31,7 +32,7 @@ std::string Got(const YAML::Node& node) {
 std::string Words(Range range) {
   if (range.min == kPositive.min && range.max == kPositive.max) return "a positive number";
   if (std::isinf(range.min) && std::isinf(range.max)) return "a finite number";
-  return "a number in [" + detail::Text(range.min) + ", " + detail::Text(range.max) + "]";
+  return "a number in [" + NumberText(range.min) + ", " + NumberText(range.max) + "]";
 }
 
 }  // namespace

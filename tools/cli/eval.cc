@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "robot/base/error.h"
-#include "robot/base/read_file.h"
+#include "robot/base/files.h"
 #include "scenarios/judge/alignment.h"
 #include "scenarios/judge/tum_file.h"
 #include "tools/cli/commands.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "robot/base/read_file.h"
+#include "robot/base/files.h"
 #include "scenarios/judge/output_path.h"
 #include "scenarios/judge/writers.h"
 #include "slam/graph/g2o_file.h"
