@@ -37,7 +37,8 @@ const std::vector<std::pair<std::string, Strings>> kRoomsAndWhatTheyKnow{
     {"scenarios/judge/", {"scenarios/judge/", "slam/", "perception/", "robot/types/", "robot/base/"}},
     {"scenarios/", {"scenarios/", "autonomy/", "slam/", "perception/", "sim/", "robot/"}},
     {"tools/", {"tools/", "scenarios/", "autonomy/", "slam/", "perception/", "sim/", "robot/"}},
-    {"tests/", {"tests/", "tools/", "scenarios/", "autonomy/", "slam/", "perception/", "sim/", "robot/"}},
+    {"docs/", {"docs/", "autonomy/", "slam/", "perception/", "robot/"}},
+    {"tests/", {"tests/", "docs/", "tools/", "scenarios/", "autonomy/", "slam/", "perception/", "sim/", "robot/"}},
 };
 const Strings kEngineHeaders{"mujoco/", "embree3/", "embree4/", "EGL/", "GL/"};
 const Strings kEngineTargets{"mujoco::mujoco", "Embree::embree"};
@@ -124,7 +125,7 @@ template <class Wanted>
 std::map<std::string, std::string> Read(Wanted wanted) {
   std::map<std::string, std::string> files;
   const fs::path root = MERLIN_SOURCE_DIR;
-  for (const char* top : {"robot", "sim", "perception", "slam", "autonomy", "scenarios", "tools", "tests"})
+  for (const char* top : {"robot", "sim", "perception", "slam", "autonomy", "scenarios", "tools", "docs", "tests"})
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / top)) {
       if (!entry.is_regular_file() || !wanted(entry.path())) continue;
       std::stringstream text;
