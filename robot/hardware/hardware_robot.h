@@ -1,4 +1,4 @@
-// The real car as the stack sees it: its drivers together, each from its own config.
+// The real car: all its drivers, each made from its own config.
 #pragma once
 
 #include <memory>
@@ -15,11 +15,11 @@
 
 namespace merlin {
 
-// Which device is where: the file that `--robot hardware:FILE` names.
+// Where each device is: the contents of the file that `--robot hardware:FILE` names.
 struct HardwareConfig {
   RealClockConfig clock;
   MicrocontrollerConfig drive;
-  std::optional<Compass3dmConfig> compass;  // not listed: the car has none
+  std::optional<Compass3dmConfig> compass;  // absent: the car has none
   TofCameraConfig depth;
   std::optional<ColorCaptureConfig> color;
 };
@@ -33,7 +33,7 @@ void Visit(Visitor& v, HardwareConfig& c) {
   v("color", c.color);
 }
 
-// What the cameras are, and how they begin.
+// The cameras and their first settings.
 struct HardwareCameras {
   DepthCameraInfo depth;
   DepthSettings depth_settings;

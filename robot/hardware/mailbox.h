@@ -14,7 +14,7 @@ namespace merlin {
 template <class Measurement>
 class Mailbox {
  public:
-  // Of what waits it keeps the newest `places`. Silent: ok until nothing has come for so long.
+  // Keeps the newest `places` measurements. The device counts as silent when nothing has come for silent_after.
   Mailbox(std::size_t places, Duration silent_after, Time now)
       : waiting_(places), silent_after_(silent_after), heard_(now) {
     status_.since = now;

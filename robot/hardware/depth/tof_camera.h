@@ -1,5 +1,5 @@
-// The real ToF camera: its maker's library on a thread of its own, which fetches frames, corrects their stamps and
-// reopens the camera when it is lost.
+// The driver of the real ToF camera. A thread of its own calls the maker's library: it fetches frames, corrects their
+// stamps, and reopens the camera when the connection is lost.
 #pragma once
 
 #include <condition_variable>
