@@ -3,6 +3,8 @@
 // low half the steering, each a two's complement number of -7 to 7 sevenths of the car's limit. Forwards and left are
 // positive. -8 is not a number of this code and reads as a stop, as does 0x00. How long it is
 // valid the receiver decides: its watchdog brakes when no byte comes.
+// The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
+// University of Siegen, about 2011.
 #pragma once
 
 #include <cstdint>

@@ -151,6 +151,8 @@ TEST_F(Description, DepthCameraLooksAheadLevel) {
 }
 
 // Table 4.5 of the thesis, read as q_CCD = R q_PMD + t.
+// The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
+// University of Siegen, about 2011.
 TEST_F(Description, ColourCameraStandsWhereTable45Says) {
   const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
   const Pose T_ccd_pmd = car.T_base_color->inverse() * car.T_base_depth;
