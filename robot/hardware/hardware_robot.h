@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "robot/hal/hal.h"
-#include "robot/hardware/color/color_capture.h"
+#include "robot/hardware/color/color_camera_driver.h"
 #include "robot/hardware/compass/compass_3dm_driver.h"
-#include "robot/hardware/depth/tof_camera.h"
+#include "robot/hardware/depth/tof_camera_driver.h"
 #include "robot/hardware/drive/microcontroller_drive.h"
 #include "robot/hardware/real_clock.h"
 
@@ -21,7 +21,7 @@ struct HardwareConfig {
   MicrocontrollerConfig drive;
   std::optional<Compass3dmConfig> compass;  // absent: the car has none
   TofCameraConfig depth;
-  std::optional<ColorCaptureConfig> color;
+  std::optional<ColorCameraConfig> color;
 };
 
 template <class Visitor>
@@ -58,8 +58,8 @@ class HardwareRobot {
   RealClock& clock_;
   MicrocontrollerDrive drive_;
   std::optional<Compass3dmDriver> compass_;
-  std::optional<TofCamera> depth_;
-  std::optional<ColorCapture> color_;
+  std::optional<TofCameraDriver> depth_;
+  std::optional<ColorCameraDriver> color_;
 };
 
 // One device: opened, listened to, closed again.

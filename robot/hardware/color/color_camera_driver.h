@@ -24,7 +24,7 @@ class VideoCapture;
 
 namespace merlin {
 
-struct ColorCaptureConfig {
+struct ColorCameraConfig {
   std::string source = "/dev/video0";  // a V4L2 device, its path or number; or a URL that FFmpeg opens
   double stream_latency_s = 0.0;       // of coding and network, beyond the sheet's latency; the emulation's: 0.006
   double silent_after_s = 1.0;         // without a picture the camera counts as silent
@@ -34,7 +34,7 @@ struct ColorCaptureConfig {
 };
 
 template <class Visitor>
-void Visit(Visitor& v, ColorCaptureConfig& c) {
+void Visit(Visitor& v, ColorCameraConfig& c) {
   v("source", c.source);
   v("stream_latency_s", c.stream_latency_s, {0.0, 10.0});
   v("silent_after_s", c.silent_after_s, {0.01, 60.0});
@@ -43,13 +43,13 @@ void Visit(Visitor& v, ColorCaptureConfig& c) {
   v("read_limit_s", c.read_limit_s, {0.1, 60.0});
 }
 
-class ColorCapture final : public ColorCamera {
+class ColorCameraDriver final : public ColorCamera {
  public:
   // Opens the source and waits for no picture. Throws MachineError where it cannot be opened, InputError where it tells
   // a size that is not the sheet's, or for invalid settings. Another thread calls Now(), too.
-  ColorCapture(const ColorCaptureConfig& config, const ColorCameraInfo& info, const ColorSettings& settings,
-               const Clock& clock);
-  ~ColorCapture() override;
+  ColorCameraDriver(const ColorCameraConfig& config, const ColorCameraInfo& info, const ColorSettings& settings,
+                    const Clock& clock);
+  ~ColorCameraDriver() override;
 
   const ColorCameraInfo& Info() const override { return info_; }
   // Exposure, its automatic included, goes to a V4L2 device. Gain and white balance have no unit that such devices
@@ -67,7 +67,7 @@ class ColorCapture final : public ColorCamera {
   void Lose(DeviceStatus::Health health, std::stop_token stop);
   bool IsDevice() const { return source_device_.has_value(); }
 
-  ColorCaptureConfig config_;
+  ColorCameraConfig config_;
   ColorCameraInfo info_;
   const Clock& clock_;
   Mailbox<ColorFrame> mailbox_;

@@ -1,4 +1,4 @@
-#include "robot/hardware/depth/tof_camera.h"
+#include "robot/hardware/depth/tof_camera_driver.h"
 
 #include <fmt/format.h>
 
@@ -33,8 +33,8 @@ std::uint8_t FlagsOf(float range_m, float amplitude_e, const DepthCameraSheet& s
 
 }  // namespace
 
-TofCamera::TofCamera(const TofCameraConfig& config, const DepthCameraInfo& info, const DepthSettings& settings,
-                     const Clock& clock)
+TofCameraDriver::TofCameraDriver(const TofCameraConfig& config, const DepthCameraInfo& info,
+                                 const DepthSettings& settings, const Clock& clock)
     : config_(config),
       info_(info),
       clock_(clock),
@@ -47,9 +47,9 @@ TofCamera::TofCamera(const TofCameraConfig& config, const DepthCameraInfo& info,
   thread_ = std::jthread([this](std::stop_token stop) { Run(stop); });
 }
 
-TofCamera::~TofCamera() = default;
+TofCameraDriver::~TofCameraDriver() = default;
 
-void TofCamera::CheckAll(const DepthSettings& settings) const {
+void TofCameraDriver::CheckAll(const DepthSettings& settings) const {
   CheckSettings(info_.sheet, settings);
   if (settings.post_processing || settings.phase_images)
     throw InputError(info_.sheet.name, "the driver gives neither the maker's post-processing nor phase images");
@@ -57,19 +57,19 @@ void TofCamera::CheckAll(const DepthSettings& settings) const {
     throw InputError(info_.sheet.name, "a library of generation 1 measures with one frequency");
 }
 
-void TofCamera::Configure(const DepthSettings& settings) {
+void TofCameraDriver::Configure(const DepthSettings& settings) {
   CheckAll(settings);
   const std::lock_guard lock(mutex_);
   wanted_ = settings;
   wanted_is_new_ = true;
 }
 
-std::string TofCamera::Complaint() const {
+std::string TofCameraDriver::Complaint() const {
   const std::lock_guard lock(mutex_);
   return complaint_;
 }
 
-void TofCamera::Run(std::stop_token stop) {
+void TofCameraDriver::Run(std::stop_token stop) {
   while (!stop.stop_requested()) {
     try {
       OpenIfClosed();
@@ -85,7 +85,7 @@ void TofCamera::Run(std::stop_token stop) {
   }
 }
 
-void TofCamera::OpenIfClosed() {
+void TofCameraDriver::OpenIfClosed() {
   if (open_) return;
   camera_->Open();
   open_ = true;
@@ -94,7 +94,7 @@ void TofCamera::OpenIfClosed() {
   wanted_is_new_ = true;
 }
 
-void TofCamera::SetIfNew() {
+void TofCameraDriver::SetIfNew() {
   {
     const std::lock_guard lock(mutex_);
     if (!wanted_is_new_) return;
@@ -104,7 +104,7 @@ void TofCamera::SetIfNew() {
   camera_->Set(asked_);
 }
 
-void TofCamera::Deliver(const PmdFrame& raw, Time arrival) {
+void TofCameraDriver::Deliver(const PmdFrame& raw, Time arrival) {
   const CameraModel& camera = info_.sheet.camera;
   const std::size_t pixels = raw.range_m.size();
   DepthFrame frame{.stamp = std::max(arrival - FromSeconds(info_.sheet.latency_s), last_stamp_ + Duration(1)),
@@ -137,7 +137,7 @@ void TofCamera::Deliver(const PmdFrame& raw, Time arrival) {
   complaint_.clear();
 }
 
-void TofCamera::Lose(DeviceStatus::Health health, const std::string& complaint, std::stop_token stop) {
+void TofCameraDriver::Lose(DeviceStatus::Health health, const std::string& complaint, std::stop_token stop) {
   camera_->Close();
   {
     const std::lock_guard lock(mutex_);

@@ -32,13 +32,13 @@ void Visit(Visitor& v, TofCameraConfig& c) {
   v("reopen_s", c.reopen_s, {0.01, 60.0});
 }
 
-class TofCamera final : public DepthCamera {
+class TofCameraDriver final : public DepthCamera {
  public:
   // Opens library and camera. Throws InputError for a library that is none or lacks calls, a picture that does not fit
   // the sheet, or invalid settings; MachineError where the camera cannot be opened. Another thread calls Now(), too.
-  TofCamera(const TofCameraConfig& config, const DepthCameraInfo& info, const DepthSettings& settings,
-            const Clock& clock);
-  ~TofCamera() override;
+  TofCameraDriver(const TofCameraConfig& config, const DepthCameraInfo& info, const DepthSettings& settings,
+                  const Clock& clock);
+  ~TofCameraDriver() override;
 
   const DepthCameraInfo& Info() const override { return info_; }
   // The maker's post-processing and raw data have no calls that every camera shares: both are refused.

@@ -1,5 +1,5 @@
 // The ToF driver and the emulated vendor library, joined by the very socket that a run uses.
-#include "robot/hardware/depth/tof_camera.h"
+#include "robot/hardware/depth/tof_camera_driver.h"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ TofCameraConfig Config(const std::string& path) {
 }
 
 // Publishes until the driver hands a frame out: one that comes while the driver is busy elsewhere goes by.
-std::optional<DepthFrame> Exchange(Emulation& emulation, TofCamera& camera, const DepthFrame& frame) {
+std::optional<DepthFrame> Exchange(Emulation& emulation, TofCameraDriver& camera, const DepthFrame& frame) {
   std::optional<DepthFrame> got;
   EXPECT_TRUE(Until([&] {
     emulation.server.Publish(frame);
@@ -98,17 +98,17 @@ std::optional<DepthFrame> Exchange(Emulation& emulation, TofCamera& camera, cons
 std::string ErrorOf(const TofCameraConfig& config, const DepthCameraInfo& info = Info()) {
   const HandClock clock;
   try {
-    const TofCamera camera(config, info, {}, clock);
+    const TofCameraDriver camera(config, info, {}, clock);
   } catch (const std::exception& error) {
     return error.what();
   }
   return "";
 }
 
-TEST(TofCamera, GivesBackTheVeryBitsThatTheTwinPublished) {
+TEST(TofCameraDriver, GivesBackTheVeryBitsThatTheTwinPublished) {
   Emulation emulation;
   HandClock clock;
-  TofCamera camera(Config(emulation.path), Info(), {}, clock);
+  TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
   for (unsigned int seed = 1; seed <= 20; ++seed) {
     const DepthFrame sent = Frame(seed);
     while (camera.Poll()) {
@@ -127,10 +127,10 @@ TEST(TofCamera, GivesBackTheVeryBitsThatTheTwinPublished) {
   EXPECT_EQ(camera.Status().health, Health::kOk);
 }
 
-TEST(TofCamera, StampsTheMiddleOfTheExposureInStrictOrder) {
+TEST(TofCameraDriver, StampsTheMiddleOfTheExposureInStrictOrder) {
   Emulation emulation;
   HandClock clock;  // stands still: arrivals cannot be told apart
-  TofCamera camera(Config(emulation.path), Info(), {}, clock);
+  TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
   const auto first = Exchange(emulation, camera, Frame(1)), second = Exchange(emulation, camera, Frame(2));
   ASSERT_TRUE(first && second);
   EXPECT_NEAR(Seconds(clock.Now() - first->stamp), 0.020, 1e-3);
@@ -138,10 +138,10 @@ TEST(TofCamera, StampsTheMiddleOfTheExposureInStrictOrder) {
   EXPECT_GT(second->index, first->index);
 }
 
-TEST(TofCamera, SettingsReachTheTwinAndComeBackWithTheFrames) {
+TEST(TofCameraDriver, SettingsReachTheTwinAndComeBackWithTheFrames) {
   Emulation emulation;
   HandClock clock;
-  TofCamera camera(Config(emulation.path), Info(), {}, clock);
+  TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
   unsigned int seed = 1;
   // Both orders of the two frequencies: no step between may hold one of them twice.
   for (const DepthSettings& asked : {DepthSettings{123e-6, 30e6}, DepthSettings{5e-3, 20e6, 30e6},
@@ -166,20 +166,20 @@ TEST(TofCamera, SettingsReachTheTwinAndComeBackWithTheFrames) {
   }
 }
 
-TEST(TofCamera, RefusesSettingsThatTheSheetOrTheLibraryDoesNotHave) {
+TEST(TofCameraDriver, RefusesSettingsThatTheSheetOrTheLibraryDoesNotHave) {
   Emulation emulation;
   HandClock clock;
-  TofCamera camera(Config(emulation.path), Info(), {}, clock);
+  TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
   EXPECT_THROW(camera.Configure({1.0, 20e6}), InputError);
   EXPECT_THROW(camera.Configure({1e-3, 25e6}), InputError);
   EXPECT_THROW(camera.Configure({std::nan(""), 20e6}), InputError);
   EXPECT_THROW(camera.Configure({.phase_images = true}), InputError);
 }
 
-TEST(TofCamera, ThrowsPixelsOutThatAreNoNumbers) {
+TEST(TofCameraDriver, ThrowsPixelsOutThatAreNoNumbers) {
   Emulation emulation;
   HandClock clock;
-  TofCamera camera(Config(emulation.path), Info(), {}, clock);
+  TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
   DepthFrame sent = Frame(1);
   sent.range_m[0] = std::nanf("");
   sent.range_m[1] = -1.0f;
@@ -193,10 +193,10 @@ TEST(TofCamera, ThrowsPixelsOutThatAreNoNumbers) {
   EXPECT_EQ(got->range_m[3], sent.range_m[3]);
 }
 
-TEST(TofCamera, KeepsTheNewestForASlowReaderAndCountsTheRest) {
+TEST(TofCameraDriver, KeepsTheNewestForASlowReaderAndCountsTheRest) {
   Emulation emulation;
   HandClock clock;
-  TofCamera camera(Config(emulation.path), Info(), {}, clock);
+  TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
   EXPECT_TRUE(Until([&] { return emulation.server.Publish(Frame(1)), camera.Status().missed >= 10; }));
   std::uint64_t taken = 0;
   Time last = Time::min();
@@ -209,10 +209,10 @@ TEST(TofCamera, KeepsTheNewestForASlowReaderAndCountsTheRest) {
   EXPECT_EQ(camera.Status().delivered, taken);
 }
 
-TEST(TofCamera, IsSilentWithoutFramesAndOkWithTheNext) {
+TEST(TofCameraDriver, IsSilentWithoutFramesAndOkWithTheNext) {
   Emulation emulation;
   HandClock clock;
-  TofCamera camera(Config(emulation.path), Info(), {}, clock);
+  TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
   ASSERT_TRUE(Exchange(emulation, camera, Frame(1)));
   EXPECT_EQ(camera.Status().health, Health::kOk);
   EXPECT_TRUE(Until([&] {  // a frame may still be on its way
@@ -222,11 +222,11 @@ TEST(TofCamera, IsSilentWithoutFramesAndOkWithTheNext) {
   EXPECT_TRUE(Until([&] { return emulation.server.Publish(Frame(2)), camera.Status().health == Health::kOk; }));
 }
 
-TEST(TofCamera, ComesBackWhenTheCameraDoesAndSetsItAgain) {
+TEST(TofCameraDriver, ComesBackWhenTheCameraDoesAndSetsItAgain) {
   const std::string path = SocketPath();
   HandClock clock;
   auto emulation = std::make_unique<Emulation>(path);
-  TofCamera camera(Config(path), Info(), {2e-3, 30e6}, clock);
+  TofCameraDriver camera(Config(path), Info(), {2e-3, 30e6}, clock);
   ASSERT_TRUE(Exchange(*emulation, camera, Frame(1)));
   emulation.reset();
   EXPECT_TRUE(Until([&] { return camera.Status().health == Health::kAbsent; }));
@@ -241,11 +241,11 @@ TEST(TofCamera, ComesBackWhenTheCameraDoesAndSetsItAgain) {
   EXPECT_EQ(emulation->Settings().frequency_hz, 30e6);
 }
 
-TEST(TofCamera, IsFaultyWhenAnotherCameraComesBack) {
+TEST(TofCameraDriver, IsFaultyWhenAnotherCameraComesBack) {
   const std::string path = SocketPath();
   HandClock clock;
   auto emulation = std::make_unique<Emulation>(path);
-  TofCamera camera(Config(path), Info(), {}, clock);
+  TofCameraDriver camera(Config(path), Info(), {}, clock);
   emulation.reset();
   DepthCameraSheet other = Info().sheet;
   other.camera.width = kWidth + 1;
@@ -254,7 +254,7 @@ TEST(TofCamera, IsFaultyWhenAnotherCameraComesBack) {
   EXPECT_TRUE(Until([&] { return camera.Status().garbage > 0; }));
 }
 
-TEST(TofCamera, SaysWhatIsWrongWithTheLibrary) {
+TEST(TofCameraDriver, SaysWhatIsWrongWithTheLibrary) {
   TofCameraConfig config = Config("nowhere");
   config.pmd.library = "/no/such/library.so";
   EXPECT_EQ(ErrorOf(config), "/no/such/library.so: no such library");
@@ -274,22 +274,22 @@ TEST(TofCamera, SaysWhatIsWrongWithTheLibrary) {
   EXPECT_NE(ErrorOf(config).find("the library lacks pmdConnectFireWire, pmdSetIntegrationTime"), std::string::npos);
 }
 
-TEST(TofCamera, SaysWhyTheCameraDoesNotOpen) {
+TEST(TofCameraDriver, SaysWhyTheCameraDoesNotOpen) {
   const HandClock clock;
   const std::string nowhere = SocketPath();
-  EXPECT_THROW(TofCamera(Config(nowhere), Info(), {}, clock), MachineError);
+  EXPECT_THROW(TofCameraDriver(Config(nowhere), Info(), {}, clock), MachineError);
   EXPECT_EQ(ErrorOf(Config(nowhere)), std::string(PMD_LIBRARY) + ": pmdOpen failed: " + nowhere +
                                           ": no camera answers there: No such file or directory");
   EXPECT_NE(ErrorOf(Config(std::string(200, 'x'))).find("has 1 to 107 bytes, got 200"), std::string::npos);
   EXPECT_NE(ErrorOf(Config("")).find("has 1 to 107 bytes, got 0"), std::string::npos);
 }
 
-TEST(TofCamera, IsSilentAndTellsWhyWhereTheLibraryThrows) {
+TEST(TofCameraDriver, IsSilentAndTellsWhyWhereTheLibraryThrows) {
   TofCameraConfig config = Config("");
   config.pmd.library = THROWING_PMD_LIBRARY;
   HandClock clock;
   ASSERT_EQ(::setenv("MERLIN_THROWING_PMD", "8x6x2", 1), 0);
-  TofCamera camera(config, Info(), {}, clock);
+  TofCameraDriver camera(config, Info(), {}, clock);
   int frames = 0;
   EXPECT_TRUE(Until([&] { return (frames += camera.Poll().has_value()) == 2 && !camera.Complaint().empty(); }));
   EXPECT_EQ(camera.Complaint(), std::string(THROWING_PMD_LIBRARY) + ": the library threw: the lamp has burnt out");
@@ -301,7 +301,7 @@ TEST(TofCamera, IsSilentAndTellsWhyWhereTheLibraryThrows) {
   EXPECT_TRUE(Until([&] { return camera.Poll() && camera.Complaint().empty(); }));
 }
 
-TEST(TofCamera, RefusesACameraThatIsNotTheSheets) {
+TEST(TofCameraDriver, RefusesACameraThatIsNotTheSheets) {
   Emulation emulation;
   DepthCameraInfo info = Info();
   info.sheet.camera.width = 64;
@@ -310,14 +310,14 @@ TEST(TofCamera, RefusesACameraThatIsNotTheSheets) {
                 ": the camera's picture does not fit the sheet small; expected 64 x 6 pixels, got 8 x 6");
 }
 
-TEST(TofCamera, SpeaksTheOlderGenerationToo) {
+TEST(TofCameraDriver, SpeaksTheOlderGenerationToo) {
   Emulation emulation;
   ASSERT_EQ(::setenv("MERLIN_PMD_SOCKET", emulation.path.c_str(), 1), 0);
   HandClock clock;
   TofCameraConfig config = Config("");
   config.pmd.library = PMD_LIBRARY_1;
   config.pmd.generation = 1;
-  TofCamera camera(config, Info(), {3e-3, 30e6}, clock);
+  TofCameraDriver camera(config, Info(), {3e-3, 30e6}, clock);
   DepthFrame sent = Frame(1);
   sent.range_m[0] = 0.0f;
   sent.amplitude[1] = 599.0f;
@@ -337,7 +337,7 @@ TEST(TofCamera, SpeaksTheOlderGenerationToo) {
 TEST(DepthServer, DropsWhoTalksGarbageAndServesTheOthers) {
   Emulation emulation;
   HandClock clock;
-  TofCamera camera(Config(emulation.path), Info(), {}, clock);
+  TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
   std::mt19937 random(1);
   for (int i = 0; i < 20; ++i) {
     const int socket = ConnectTo(emulation.path);
@@ -352,12 +352,12 @@ TEST(DepthServer, DropsWhoTalksGarbageAndServesTheOthers) {
   EXPECT_TRUE(Exchange(emulation, camera, Frame(1)));
 }
 
-TEST(TofCamera, SurvivesAServerThatTalksGarbage) {
+TEST(TofCameraDriver, SurvivesAServerThatTalksGarbage) {
   const std::string path = SocketPath();
   std::atomic<int> visits = 0;
   HandClock clock;
   auto emulation = std::make_unique<Emulation>(path);
-  TofCamera camera(Config(path), Info(), {}, clock);
+  TofCameraDriver camera(Config(path), Info(), {}, clock);
   emulation.reset();
   {
     ConnectionServer garbage(ListenAt(path), [&](int socket) {

@@ -1,4 +1,4 @@
-#include "robot/hardware/color/color_capture.h"
+#include "robot/hardware/color/color_camera_driver.h"
 
 #include <fmt/format.h>
 
@@ -30,8 +30,8 @@ void KeepFfmpegQuiet() { ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
 
 }  // namespace
 
-ColorCapture::ColorCapture(const ColorCaptureConfig& config, const ColorCameraInfo& info, const ColorSettings& settings,
-                           const Clock& clock)
+ColorCameraDriver::ColorCameraDriver(const ColorCameraConfig& config, const ColorCameraInfo& info,
+                                     const ColorSettings& settings, const Clock& clock)
     : config_(config),
       info_(info),
       clock_(clock),
@@ -45,16 +45,16 @@ ColorCapture::ColorCapture(const ColorCaptureConfig& config, const ColorCameraIn
   thread_ = std::jthread([this](std::stop_token stop) { Run(stop); });
 }
 
-ColorCapture::~ColorCapture() = default;
+ColorCameraDriver::~ColorCameraDriver() = default;
 
-void ColorCapture::Configure(const ColorSettings& settings) {
+void ColorCameraDriver::Configure(const ColorSettings& settings) {
   CheckSettings(info_.sheet, settings);
   const std::lock_guard lock(mutex_);
   wanted_ = settings;
   wanted_is_new_ = true;
 }
 
-void ColorCapture::Run(std::stop_token stop) {
+void ColorCameraDriver::Run(std::stop_token stop) {
   cv::Mat picture;
   while (!stop.stop_requested()) {
     try {
@@ -73,7 +73,7 @@ void ColorCapture::Run(std::stop_token stop) {
   }
 }
 
-void ColorCapture::OpenIfClosed() {
+void ColorCameraDriver::OpenIfClosed() {
   if (capture_->isOpened()) return;
   const CameraModel& camera = info_.sheet.camera;
   const bool open =
@@ -94,14 +94,14 @@ void ColorCapture::OpenIfClosed() {
   wanted_is_new_ = true;
 }
 
-void ColorCapture::CheckSize(int width, int height) const {
+void ColorCameraDriver::CheckSize(int width, int height) const {
   const CameraModel& camera = info_.sheet.camera;
   if (width == camera.width && height == camera.height) return;
   throw InputError(config_.source, "the camera's picture does not fit the sheet " + info_.sheet.name,
                    fmt::format("{} x {} pixels", camera.width, camera.height), fmt::format("{} x {}", width, height));
 }
 
-void ColorCapture::SetIfNew() {
+void ColorCameraDriver::SetIfNew() {
   {
     const std::lock_guard lock(mutex_);
     if (!wanted_is_new_) return;
@@ -114,7 +114,7 @@ void ColorCapture::SetIfNew() {
   if (!asked_.auto_exposure) capture_->set(cv::CAP_PROP_EXPOSURE, asked_.exposure_s * 1e4);
 }
 
-void ColorCapture::Deliver(const cv::Mat& picture, Time arrival) {
+void ColorCameraDriver::Deliver(const cv::Mat& picture, Time arrival) {
   CheckSize(picture.cols, picture.rows);
   if (picture.type() != CV_8UC3 || !picture.isContinuous())
     throw InputError(config_.source, "the pictures are not 8-bit BGR");
@@ -130,7 +130,7 @@ void ColorCapture::Deliver(const cv::Mat& picture, Time arrival) {
   lost_once_ = false;
 }
 
-void ColorCapture::Lose(DeviceStatus::Health health, std::stop_token stop) {
+void ColorCameraDriver::Lose(DeviceStatus::Health health, std::stop_token stop) {
   capture_->release();
   was_lost_ = true;
   if (health == DeviceStatus::Health::kFaulty) mailbox_.CountGarbage();

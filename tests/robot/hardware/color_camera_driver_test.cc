@@ -1,5 +1,5 @@
 // The colour driver and the emulated network camera, joined by a stream on this machine.
-#include "robot/hardware/color/color_capture.h"
+#include "robot/hardware/color/color_camera_driver.h"
 
 #include <gtest/gtest.h>
 
@@ -51,9 +51,9 @@ class Publisher {
   std::jthread thread_;
 };
 
-ColorCaptureConfig CaptureConfig(const std::string& url) { return {.source = url, .reopen_s = 0.01}; }
+ColorCameraConfig CaptureConfig(const std::string& url) { return {.source = url, .reopen_s = 0.01}; }
 
-std::optional<ColorFrame> Next(ColorCapture& camera) {
+std::optional<ColorFrame> Next(ColorCameraDriver& camera) {
   std::optional<ColorFrame> frame;
   EXPECT_TRUE(Until([&] { return (frame = camera.Poll()).has_value(); }));
   return frame;
@@ -66,13 +66,13 @@ double LargestDifference(const ColorFrame& a, const ColorFrame& b) {
   return largest;
 }
 
-TEST(ColorCapture, ShowsThePictureThatTheTwinPublished) {
+TEST(ColorCameraDriver, ShowsThePictureThatTheTwinPublished) {
   MjpegServer server;
   const ColorFrame sent = Picture(100);
   const Publisher publisher(server, sent);
   HandClock clock;
   const ColorSettings settings = DefaultSettings(ColorInfo().sheet);
-  ColorCapture camera(CaptureConfig(server.url()), ColorInfo(), settings, clock);
+  ColorCameraDriver camera(CaptureConfig(server.url()), ColorInfo(), settings, clock);
   const auto first = Next(camera), second = Next(camera);
   ASSERT_TRUE(first && second);
   ASSERT_EQ(first->bgr.size(), sent.bgr.size());
@@ -83,22 +83,22 @@ TEST(ColorCapture, ShowsThePictureThatTheTwinPublished) {
   EXPECT_EQ(camera.Status().health, Health::kOk);
 }
 
-TEST(ColorCapture, SubtractsTheStreamsLatencyToo) {
+TEST(ColorCameraDriver, SubtractsTheStreamsLatencyToo) {
   MjpegServer server;
   const Publisher publisher(server, Picture(0));
   HandClock clock;
-  ColorCaptureConfig config = CaptureConfig(server.url());
+  ColorCameraConfig config = CaptureConfig(server.url());
   config.stream_latency_s = 0.25;
-  ColorCapture camera(config, ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
+  ColorCameraDriver camera(config, ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   EXPECT_NEAR(Seconds(clock.Now() - Next(camera)->stamp), 0.300, kStrictOrder_s);
 }
 
-TEST(ColorCapture, RefusesAStreamOfAnotherSize) {
+TEST(ColorCameraDriver, RefusesAStreamOfAnotherSize) {
   MjpegServer server;
   const Publisher publisher(server, Picture(0, 80, 60));
   HandClock clock;
   try {
-    const ColorCapture camera(CaptureConfig(server.url()), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
+    const ColorCameraDriver camera(CaptureConfig(server.url()), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(
@@ -107,12 +107,12 @@ TEST(ColorCapture, RefusesAStreamOfAnotherSize) {
   }
 }
 
-TEST(ColorCapture, SaysThatNobodyIsThere) {
+TEST(ColorCameraDriver, SaysThatNobodyIsThere) {
   HandClock clock;
   const std::string url = [] { return MjpegServer().url(); }();  // gone again
   for (const std::string& source : {url, std::string("/dev/no_such_camera"), std::string("99"), std::string("")}) {
     try {
-      const ColorCapture camera(CaptureConfig(source), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
+      const ColorCameraDriver camera(CaptureConfig(source), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
       FAIL() << source;
     } catch (const MachineError& error) {
       EXPECT_EQ(std::string(error.what()), source + ": cannot be opened as a camera or a stream");
@@ -120,13 +120,13 @@ TEST(ColorCapture, SaysThatNobodyIsThere) {
   }
 }
 
-TEST(ColorCapture, ComesBackWhenTheStreamDoes) {
+TEST(ColorCameraDriver, ComesBackWhenTheStreamDoes) {
   auto server = std::make_unique<MjpegServer>();
   const std::string url = server->url();
   const int port = server->port();
   HandClock clock;
   std::optional<Publisher> publisher(std::in_place, *server, Picture(50));
-  ColorCapture camera(CaptureConfig(url), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
+  ColorCameraDriver camera(CaptureConfig(url), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   ASSERT_TRUE(Next(camera));
   publisher.reset();
   server.reset();
@@ -141,13 +141,13 @@ TEST(ColorCapture, ComesBackWhenTheStreamDoes) {
   EXPECT_EQ(camera.Status().health, Health::kOk);
 }
 
-TEST(ColorCapture, IsFaultyWhenTheSizeChanges) {
+TEST(ColorCameraDriver, IsFaultyWhenTheSizeChanges) {
   auto server = std::make_unique<MjpegServer>();
   const std::string url = server->url();
   const int port = server->port();
   HandClock clock;
   std::optional<Publisher> publisher(std::in_place, *server, Picture(50));
-  ColorCapture camera(CaptureConfig(url), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
+  ColorCameraDriver camera(CaptureConfig(url), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   publisher.reset();
   server.reset();
   server = std::make_unique<MjpegServer>(port);
@@ -156,13 +156,13 @@ TEST(ColorCapture, IsFaultyWhenTheSizeChanges) {
   EXPECT_TRUE(Until([&] { return camera.Status().garbage > 0; }));
 }
 
-TEST(ColorCapture, OpensAStreamAgainThatStoppedWithoutAWord) {
+TEST(ColorCameraDriver, OpensAStreamAgainThatStoppedWithoutAWord) {
   MjpegServer server;
   HandClock clock;
   std::optional<Publisher> publisher(std::in_place, server, Picture(50));
-  ColorCaptureConfig config = CaptureConfig(server.url());
+  ColorCameraConfig config = CaptureConfig(server.url());
   config.open_limit_s = config.read_limit_s = 0.2;
-  ColorCapture camera(config, ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
+  ColorCameraDriver camera(config, ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   ASSERT_TRUE(Next(camera));
   publisher.reset();  // the connection stays: nothing is said any more
   EXPECT_TRUE(Until([&] { return camera.Status().health == Health::kAbsent; }));
@@ -172,11 +172,11 @@ TEST(ColorCapture, OpensAStreamAgainThatStoppedWithoutAWord) {
   EXPECT_TRUE(Next(camera));
 }
 
-TEST(ColorCapture, RefusesSettingsOutsideTheSheetAndReportsThoseInForce) {
+TEST(ColorCameraDriver, RefusesSettingsOutsideTheSheetAndReportsThoseInForce) {
   MjpegServer server;
   const Publisher publisher(server, Picture(50));
   HandClock clock;
-  ColorCapture camera(CaptureConfig(server.url()), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
+  ColorCameraDriver camera(CaptureConfig(server.url()), ColorInfo(), DefaultSettings(ColorInfo().sheet), clock);
   EXPECT_THROW(camera.Configure({.exposure_s = 1.0}), InputError);
   const ColorSettings settings{.exposure_s = 0.001, .auto_exposure = false};
   camera.Configure(settings);
