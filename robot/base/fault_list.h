@@ -10,7 +10,8 @@ namespace merlin {
 
 class FaultList {
  public:
-  // name: the file's, for the line that counts what is not shown; empty where the faults name it. shown: the most lines.
+  // name: the file's, for the line that counts what is not shown; empty where the faults name it. shown: the most
+  // lines.
   explicit FaultList(std::string name = {}, std::size_t shown = 12) : name_(std::move(name)), shown_(shown) {}
 
   // Runs a step of reading, and notes the InputError that it throws. Returns whether there was none.

@@ -7,8 +7,8 @@
 //
 // A config says what its keys are with its Visit function (robot/base/config.h). A fault reads
 //   FILE:LINE: field: expected a number in [0, 1], got 'bright'
-// where field is the dotted path (materials.wall.nir_albedo, obstacles[2].height_m). Unknown keys name the nearest known
-// one, and a key given twice is a fault. Byte-order marks are ignored.
+// where field is the dotted path (materials.wall.nir_albedo, obstacles[2].height_m). Unknown keys name the nearest
+// known one, and a key given twice is a fault. Byte-order marks are ignored.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -46,8 +46,8 @@ class YamlFile {
   // that holds no map of keys.
   YamlFile(const std::filesystem::path& file, const std::string& what);
 
-  // "a.b=c" over the file: c is YAML itself, so numbers, texts and lists work alike. Throws InputError for a text that is
-  // no assignment. Faults in what was set are the option's: they name --set instead of the file.
+  // "a.b=c" over the file: c is YAML itself, so numbers, texts and lists work alike. Throws InputError for a text that
+  // is no assignment. Faults in what was set are the option's: they name --set instead of the file.
   void Set(const std::string& assignment);
   bool IsSet(const std::string& field) const { return sets_.contains(field); }
 
@@ -85,7 +85,8 @@ class YamlFile {
   FaultList faults_;
 };
 
-// One map of the file, and the visitor that fills a config from it. A value that is wrong leaves its variable as it was.
+// One map of the file, and the visitor that fills a config from it. A value that is wrong leaves its variable as it
+// was.
 //
 // A type that is read in its own way brings, beside it,
 //   void ReadYaml(YamlReader& reader, const YAML::Node& node, const std::string& field, T& value);
@@ -123,8 +124,8 @@ class YamlReader {
   // Null: the file does not give it.
   const YamlEntry* Find(const std::string& key) const;
 
-  // A rule between the values of these keys, asked only where each of them is right on its own. The fault is that of the
-  // first.
+  // A rule between the values of these keys, asked only where each of them is right on its own. The fault is that of
+  // the first.
   void Rule(bool holds, std::initializer_list<const char*> keys, const std::string& what);
   // Call last: every key that nobody asked for is a fault.
   void RefuseUnknown();

@@ -38,8 +38,8 @@ class Asymmetry {
 
 // The base's frame in the root's: on the ground below the rear axle's middle, x ahead, y left, z up. Its y is along the
 // rear axle, or along the front one if all wheels stand more symmetrically about that: one wheel that is off turns its
-// own axle, and must not turn the car. A base within rounding of the root is the root. Throws InputError for wheels that
-// are not two axles.
+// own axle, and must not turn the car. A base within rounding of the root is the root. Throws InputError for wheels
+// that are not two axles.
 Pose BaseInRoot(const UrdfSource& source, const Middles& root, double radius_m);
 
 // Wheelbase, track and the directions of the wheels' axes. Throws InputError for wheels that are not as on a car: two

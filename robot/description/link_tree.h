@@ -25,8 +25,8 @@ class LinkTree {
   std::size_t HeadOf(std::size_t index, const std::set<std::size_t>& heads) const;
 
   bool Has(const RoleName& frame) const;
-  // The link of that name, and the link behind the joint of that name. Throw InputError, with the nearest name, where the
-  // URDF has none.
+  // The link of that name, and the link behind the joint of that name. Throw InputError, with the nearest name, where
+  // the URDF has none.
   std::size_t LinkOf(const RoleName& frame) const;
   std::size_t LinkBehind(const RoleName& joint) const;
 

@@ -37,7 +37,7 @@ class EmulatedRobot {
   EmulatedRobot& operator=(const EmulatedRobot&) = delete;
 
   void Start();
-  // Stops the world, for good.
+  // The world stands still from here on.
   void Stop();
 
   std::string drive_port() const { return drive_terminal_.path(); }

@@ -1,5 +1,5 @@
-// What every device's Poll promises: measurements in order of stamps, each handed out once. For a slow reader the newest
-// few are kept, and what it missed is counted.
+// What every device's Poll promises: measurements in order of stamps, each handed out once. For a slow reader the
+// newest few are kept, and what it missed is counted.
 //
 //            Put                                  Take
 //   driver   Put(measurement)                     Take()      all that has come

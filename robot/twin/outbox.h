@@ -1,5 +1,5 @@
-// Measurements of the twin on their way to the stack: each may be taken when its latency is over, and is waited for then
-// if a worker has not finished it yet.
+// Measurements of the twin on their way to the stack: each may be taken when its latency is over, and is waited for
+// then if a worker has not finished it yet.
 #pragma once
 
 #include <future>

@@ -108,8 +108,8 @@ struct CarDescription {
   std::optional<Pose> T_base_color;      // none: the car has no colour camera
   std::optional<Pose> T_base_compass;    // none: it has no compass
 
-  // Of a turntable the car stands on: through the base's origin, so that a turn moves no true pose from its place. (On a
-  // small circle the judge would take the noise of the path for a turn of the map.)
+  // Of a turntable the car stands on: through the base's origin, so that a turn moves no true pose from its place. (On
+  // a small circle the judge would take the noise of the path for a turn of the map.)
   Pose T_base_stand() const { return Pose::Identity(); }
 
   double MetresPerCount() const {  // of the four-wheel mean's path

@@ -1,5 +1,5 @@
-// The driver of the real colour camera: a V4L2 device or a network stream, read through OpenCV. A thread of its own keeps
-// the newest picture for the stack, and reopens a source that is lost.
+// The driver of the real colour camera: a V4L2 device or a network stream, read through OpenCV. A thread of its own
+// keeps the newest picture for the stack, and reopens a source that is lost.
 //
 // Measured: a 640 x 480 picture that the emulation's MjpegServer publishes is there for Poll 7 ms later (median; 95 %
 // within 11 ms; two busy cores). FFmpeg's nobuffer and low_delay change nothing for MJPEG, whose pictures need no

@@ -1,6 +1,6 @@
 // The driver of MERLIN's motor, steering and (where there is one) pan unit: its microcontroller on a serial port. The
-// driver has its own thread; no call waits for the port. Braking never depends on this program: the microcontroller brakes when a command
-// expires and when none comes.
+// driver has its own thread; no call waits for the port. Braking never depends on this program: the microcontroller
+// brakes when a command expires and when none comes.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// A joystick of the Linux kernel (/dev/input/js0), read without waiting. A named pipe with the same events works as well:
-// from a joystick on another machine (`ssh there cat /dev/input/js0 > pipe`), or from a recording.
+// A joystick of the Linux kernel (/dev/input/js0), read without waiting. A named pipe with the same events works as
+// well: from a joystick on another machine (`ssh there cat /dev/input/js0 > pipe`), or from a recording.
 #pragma once
 
 #include <filesystem>

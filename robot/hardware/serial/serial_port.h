@@ -35,8 +35,8 @@ class SerialPort {
 
   // What has arrived, up to 4096 bytes a call. A port that is unplugged closes itself: see is_open().
   Bytes Read();
-  // A message that the line begins to take goes out whole: the tail of a short write is kept and comes before whatever is
-  // written next (nothing, too: Write({})). While a tail waits, new messages are dropped: they would come too late.
+  // A message that the line begins to take goes out whole: the tail of a short write is kept and comes before whatever
+  // is written next (nothing, too: Write({})). While a tail waits, new messages are dropped: they would come too late.
   void Write(BytesView message);
   // Until something can be read or another thread calls Wake; false: the time was over before.
   bool Wait(Duration timeout);
