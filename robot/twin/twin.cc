@@ -52,7 +52,7 @@ class TwinDepth final : public DepthCamera {
   void Sample(const sim::World& world) {
     now_ = world.Now();
     if (!schedule_.Due(now_)) return;
-    auto bodies = sim::MotionsOf(world.model(), world.data());
+    auto bodies = world.Motions();
     const sim::BodyMotion camera = world.CameraMotion(info_.T_base_camera);
     // Nothing leaves before its last sub-frame is over.
     const Time out = now_ + FromSeconds(std::max(info_.sheet.latency_s, 0.5 * info_.sheet.ExposureSpan_s(settings_)));
@@ -111,7 +111,7 @@ class TwinColor final : public ColorCamera {
   void Sample(const sim::World& world) {
     now_ = world.Now();
     if (!schedule_.Due(now_)) return;
-    auto shot = camera_->Take(world.model(), world.data(), world.CameraMotion(info_.T_base_camera));
+    auto shot = camera_->Take(world.model(), world.data(), world.CameraMotion(info_.T_base_camera), world.Motions());
     outbox_.Put(now_, worker_.Do([this, shot, settings = settings_, stamp = now_, index = index_++] {
       return camera_->Expose(*shot, settings, stamp, index);
     }));

@@ -72,6 +72,14 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
   const auto anchor = [&](const char* field, std::string& named) {
     if (!sets.contains(field)) Anchor(named, file.parent_path());
   };
+  const auto where = [&](const char* list, std::size_t i) {
+    return sets.contains(list) ? "--set" : file.string() + ":" + std::to_string(root[list][i].Mark().line + 1);
+  };
+  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) scenario.obstacles[i].where = where("obstacles", i);
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    scenario.actors[i].where = where("actors", i);
+    anchor("actors", scenario.actors[i].model);
+  }
   anchor("room", scenario.room);
   anchor("car.model", scenario.car.model);
   anchor("car.calibration", scenario.car.calibration);
@@ -84,9 +92,9 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
   if (std::ranges::find(behaviors, scenario.task.behavior) == behaviors.end())
     faults.push_back(file.string() + ": task.behavior: unknown behavior '" + scenario.task.behavior +
                      "'; did you mean '" + NearestName(scenario.task.behavior, behaviors) + "'?");
-  for (const ObstacleEvent& event : scenario.obstacles)
-    if (!(event.disappear_s > event.appear_s))
-      faults.push_back(file.string() + ": obstacles: one disappears before it appears");
+  for (const sim::ObstacleConfig& obstacle : scenario.obstacles)
+    if (!(obstacle.disappear_s > obstacle.appear_s))
+      faults.push_back(obstacle.where + ": obstacles: one disappears before it appears");
   if (faults.empty()) return scenario;
   std::string all = faults.front();
   for (std::size_t i = 1; i < faults.size(); ++i) all += "\n" + faults[i];

@@ -11,6 +11,7 @@
 #include "perception/pipeline.h"
 #include "robot/base/config.h"
 #include "scenarios/judge/result.h"
+#include "sim/actors/actor_config.h"
 #include "sim/compass.h"
 #include "sim/drive/drivetrain_config.h"
 #include "slam/slam.h"
@@ -115,30 +116,6 @@ void Visit(Visitor& v, Sensors& c) {
   v("compass", c.compass);
 }
 
-// A box that appears before the car and goes away again.
-struct ObstacleEvent {
-  double appear_s = 0.0;  // run time
-  double disappear_s = 1e6;
-  double ahead_m = 3.0;   // its near face before the car's base_link along the car's heading at that instant
-  double left_m = 0.0;    // its middle to the left of it
-  double length_m = 0.4;  // edges along the heading, across, up
-  double width_m = 0.4;
-  double height_m = 0.5;
-  std::string material = "dark_box";
-};
-
-template <class Visitor>
-void Visit(Visitor& v, ObstacleEvent& c) {
-  v("appear_s", c.appear_s, {0.0, 1e6});
-  v("disappear_s", c.disappear_s, {0.0, 1e6});
-  v("ahead_m", c.ahead_m, {0.0, 100.0});
-  v("left_m", c.left_m, {-100.0, 100.0});
-  v("length_m", c.length_m, {0.01, 10.0});
-  v("width_m", c.width_m, {0.01, 10.0});
-  v("height_m", c.height_m, {0.01, 10.0});
-  v("material", c.material);
-}
-
 struct Scenario {
   std::string room;              // models/rooms/<name>.xml, or a path
   std::string curtain = "open";  // open or closed; closed needs a room with a curtain
@@ -147,7 +124,8 @@ struct Scenario {
   std::uint64_t seed = 1;
   Sensors sensors;
   Task task;
-  std::vector<ObstacleEvent> obstacles;
+  std::vector<sim::ObstacleConfig> obstacles;  // of the twin, as actors
+  std::vector<sim::ActorConfig> actors;
   std::vector<CheckLimit> checks;
   PerceptionConfig perception;
   SlamConfig slam;
@@ -164,6 +142,7 @@ void Visit(Visitor& v, Scenario& c) {
   v("sensors", c.sensors);
   v("task", c.task);
   v("obstacles", c.obstacles);
+  v("actors", c.actors);
   v("checks", c.checks);
   v("perception", c.perception);
   v("slam", c.slam);

@@ -9,10 +9,6 @@
 
 namespace merlin {
 
-// The floor plan's bounding box [m], x and y in the world's frame: of all geoms but the car's, obstacles' and planes
-// without end. Empty: there are none, or the car does not stand in it (the room lies beside the car).
-std::optional<Eigen::AlignedBox2d> RoomBox_m(const sim::World& world);
-
 class CarWatch {
  public:
   // on_stand: the car stands on the turntable, where its wheels are to touch nothing.

@@ -45,6 +45,13 @@ struct RayGroup {
   std::vector<RayFace> faces;
   std::vector<int> face_of_triangle;  // index into faces
   std::vector<CurvedGeom> curved;
+
+  // In the group's frame, about the middle of the smallest upright box around all its geoms.
+  struct Sphere {
+    Eigen::Vector3d middle{0, 0, 0};
+    double radius_m = 0.0;
+  };
+  Sphere Around() const;
 };
 
 Pose ToPose(const mjtNum* position, const mjtNum* quaternion_wxyz);

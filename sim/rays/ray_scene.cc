@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 #include <deque>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "robot/base/error.h"
-#include "sim/rays/embree.h"
-#include "sim/rays/ray_group.h"
+#include "sim/rays/embree_group.h"
 
 namespace merlin::sim {
 namespace {
@@ -18,123 +15,12 @@ namespace {
 // One thread: the scene is small, and its bits must not depend on who builds it. A fixed widest instruction set: the
 // same bits on every machine that has it.
 constexpr char kDeviceConfig[] = "threads=1,set_affinity=0,max_isa=avx2";
-constexpr float kBoundsMargin_m = 1e-4f;  // a curved geom's box must hold it in float, too
-
-constexpr unsigned kOpaqueMask = 1, kPaneMask = 2;
-
-// Embree's numbers of the g-th group's geometries, in whichever scene they are: 2 g for triangles, 2 g + 1 for curved ones.
-constexpr unsigned TrianglesId(unsigned group) { return 2 * group; }
-constexpr unsigned CurvedId(unsigned group) { return 2 * group + 1; }
-constexpr bool IsCurved(unsigned id) { return id % 2 == 1; }
-constexpr unsigned GroupOf(unsigned id) { return id / 2; }
-
-unsigned MaskOf(const RayGroup& group) { return group.panes ? kPaneMask : kOpaqueMask; }
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, Release>;
-using Scene = std::unique_ptr<RTCSceneTy, Release>;
-using Geometry = std::unique_ptr<RTCGeometryTy, Release>;
-
-void CurvedBounds(const RTCBoundsFunctionArguments* args) {
-  const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];
-  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(curved.rotation);
-  const Eigen::Vector3f centre = Eigen::Map<const Eigen::Vector3d>(curved.position).cast<float>();
-  const Eigen::Vector3f half = (R.cwiseAbs() * HalfEdges(curved)).cast<float>().array() + kBoundsMargin_m;
-  const Eigen::Vector3f low = centre - half, high = centre + half;
-  *args->bounds_o = {low.x(), low.y(), low.z(), 0.0f, high.x(), high.y(), high.z(), 0.0f};
-}
-
-// Range along the ray, or a negative number.
-float HitCurved(const CurvedGeom& curved, RTCRayN* rays, unsigned n, unsigned i, mjtNum normal[3]) {
-  const mjtNum origin[3] = {RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)};
-  const mjtNum direction[3] = {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)};
-  const float range = static_cast<float>(
-      mju_rayGeom(curved.position, curved.rotation, curved.size, origin, direction, curved.type, normal));
-  return range >= RTCRayN_tnear(rays, n, i) && range <= RTCRayN_tfar(rays, n, i) ? range : -1.0f;
-}
-
-void IntersectCurved(const RTCIntersectFunctionNArguments* args) {
-  const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];
-  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
-  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
-  for (unsigned i = 0; i < args->N; ++i) {
-    mjtNum normal[3];
-    const float range = args->valid[i] ? HitCurved(curved, rays, args->N, i, normal) : -1.0f;
-    if (range < 0.0f) continue;
-    RTCRayN_tfar(rays, args->N, i) = range;
-    RTCHitN_Ng_x(hits, args->N, i) = static_cast<float>(normal[0]);
-    RTCHitN_Ng_y(hits, args->N, i) = static_cast<float>(normal[1]);
-    RTCHitN_Ng_z(hits, args->N, i) = static_cast<float>(normal[2]);
-    RTCHitN_primID(hits, args->N, i) = args->primID;
-    RTCHitN_geomID(hits, args->N, i) = args->geomID;
-    RTCHitN_instID(hits, args->N, i, 0) = args->context->instID[0];
-  }
-}
-
-void OccludeByCurved(const RTCOccludedFunctionNArguments* args) {
-  const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];
-  for (unsigned i = 0; i < args->N; ++i) {
-    mjtNum normal[3];
-    if (args->valid[i] && HitCurved(curved, args->ray, args->N, i, normal) >= 0.0f)
-      RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
-  }
-}
-
-// Rejects hits of a plane from below; the ray is in the group's frame, which is the plane's.
-void SeenFromAboveOnly(const RTCFilterFunctionNArguments* args) {
-  for (unsigned i = 0; i < args->N; ++i)
-    if (RTCRayN_dir_z(args->ray, args->N, i) >= 0.0f) args->valid[i] = 0;
-}
-
-Scene NewScene(RTCDevice device, RTCSceneFlags flags) {
-  Scene scene(rtcNewScene(device));
-  rtcSetSceneFlags(scene.get(), flags);
-  return scene;
-}
-
-void AttachTriangles(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned id) {
-  const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  void* vertices = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(group.vertices[0]), group.vertices.size());
-  void* triangles = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            sizeof(group.triangles[0]), group.triangles.size());
-  std::memcpy(vertices, group.vertices.data(), group.vertices.size() * sizeof(group.vertices[0]));
-  std::memcpy(triangles, group.triangles.data(), group.triangles.size() * sizeof(group.triangles[0]));
-  if (group.one_sided) {
-    rtcSetGeometryIntersectFilterFunction(geometry.get(), SeenFromAboveOnly);
-    rtcSetGeometryOccludedFilterFunction(geometry.get(), SeenFromAboveOnly);
-  }
-  rtcSetGeometryMask(geometry.get(), MaskOf(group));
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometryByID(scene, geometry.get(), id);
-}
-
-void AttachCurved(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned id) {
-  const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
-  rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(group.curved.size()));
-  rtcSetGeometryUserData(geometry.get(), const_cast<RayGroup*>(&group));  // read only
-  rtcSetGeometryBoundsFunction(geometry.get(), CurvedBounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry.get(), IntersectCurved);
-  rtcSetGeometryOccludedFunction(geometry.get(), OccludeByCurved);
-  rtcSetGeometryMask(geometry.get(), MaskOf(group));
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometryByID(scene, geometry.get(), id);
-}
-
-void Attach(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned number) {
-  if (!group.triangles.empty()) AttachTriangles(device, scene, group, TrianglesId(number));
-  if (!group.curved.empty()) AttachCurved(device, scene, group, CurvedId(number));
-}
 
 // A group that moves, or has a frame of its own: a scene of its own, and where it stands.
 struct Instance {
   const RayGroup* group;
-  Scene scene;
-  Geometry geometry;
+  EmbreeScene scene;
+  EmbreeGeometry geometry;
   Eigen::Matrix3f R_world_group = Eigen::Matrix3f::Identity();
   Eigen::Matrix4f T_world_group_last = Eigen::Matrix4f::Identity();
   bool placed = false;
@@ -237,15 +123,18 @@ void Occlude(const Lanes& lanes, RTCScene scene, RTCRay8& packet) {
 // rooms have nothing in it, and their rays then meet one hierarchy only.
 struct RayScene::Impl {
   std::deque<RayGroup> groups;  // Embree keeps their addresses
-  Device device{rtcNewDevice(kDeviceConfig)};
+  EmbreeDevice device{rtcNewDevice(kDeviceConfig)};
   std::map<unsigned, Instance> instances;  // by the group's number
   std::vector<int> first_face;             // of a group
+  std::vector<RayGroup::Sphere> spheres;   // the same
+  std::vector<int> body_of_geom;
   std::vector<Face> faces;
-  Scene fixed, moving;
+  EmbreeScene fixed, moving;
   bool has_instances = false, fresh = true;  // fresh: never committed
 
   Impl(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane)
-      : groups(GroupGeoms(model, skip_body, is_pane)) {
+      : groups(GroupGeoms(model, skip_body, is_pane)),
+        body_of_geom(model->geom_bodyid, model->geom_bodyid + model->ngeom) {
     if (!device) throw MachineError("ray casting: Embree cannot be started on this machine");
     fixed = NewScene(device.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(fixed.get(), RTC_BUILD_QUALITY_HIGH);
@@ -253,6 +142,7 @@ struct RayScene::Impl {
     for (unsigned number = 0; number < groups.size(); ++number) {
       const RayGroup& group = groups[number];
       first_face.push_back(static_cast<int>(faces.size()));
+      spheres.push_back(group.Around());
       faces.resize(faces.size() + group.faces.size());
       if (group.fixed) {
         Attach(device.get(), fixed.get(), group, number);
@@ -320,10 +210,21 @@ RayScene::RayScene(const mjModel* model, const std::vector<bool>& skip_body, con
 
 RayScene::~RayScene() = default;
 
-bool RayScene::Moves(const BodyMotions& bodies) const {
-  return std::ranges::any_of(
-      impl_->groups, [&](const RayGroup& group) { return !bodies[static_cast<std::size_t>(group.body)].still(); });
+std::vector<Mover> RayScene::Movers(const BodyMotions& bodies) const {
+  std::vector<Mover> movers;
+  for (std::size_t number = 0; number < impl_->groups.size(); ++number) {
+    const RayGroup& group = impl_->groups[number];
+    const BodyMotion& body = bodies[static_cast<std::size_t>(group.body)];
+    if (body.still()) continue;
+    const RayGroup::Sphere& around = impl_->spheres[number];
+    const BodyMotion middle = body.Of(group.T_body_group * Pose(Eigen::Translation3d(around.middle)));
+    movers.push_back({group.body, middle.T_world_body.translation(), around.radius_m,
+                      middle.velocity_m_s.norm() + middle.angular_velocity_rad_s.norm() * around.radius_m});
+  }
+  return movers;
 }
+
+int RayScene::BodyOf(int geom) const { return impl_->body_of_geom[static_cast<std::size_t>(geom)]; }
 
 const std::vector<Face>& RayScene::faces() const { return impl_->faces; }
 

@@ -38,6 +38,14 @@ struct Ray {
   float max_range_m = 100.0f;          // beyond it nothing is seen
 };
 
+// Geoms of one body that moves, in the world.
+struct Mover {
+  int body = 0;
+  Eigen::Vector3d middle{0, 0, 0};  // of a sphere around them
+  double radius_m = 0.0;
+  double speed_m_s = 0.0;  // no point of them is faster
+};
+
 enum class Panes { kSeen, kLookedThrough };
 
 class RayScene {
@@ -57,10 +65,11 @@ class RayScene {
   void Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes = Panes::kSeen) const;
   // blocked[i] = 1 where ray i meets anything before its max_range_m.
   void Occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Panes panes) const;
+  int BodyOf(int geom) const;
   // What the faces of hits are, where the last Update put them.
   const std::vector<Face>& faces() const;
-  // Does anything that can be seen move?
-  bool Moves(const BodyMotions& bodies) const;
+  // What of all that can be seen moves, if bodies move so.
+  std::vector<Mover> Movers(const BodyMotions& bodies) const;
 
  private:
   struct Impl;

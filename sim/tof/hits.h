@@ -96,6 +96,10 @@ class SubFrameTracer {
 // The mid-exposure's, for a camera that stands in a scene that stands.
 void RowOfMid(const Optics& optics, const MidHits& mid, int row, RowHits& hits);
 
+// How far the picture of this moves [pixels] within span_s / 2 of mid-exposure, at most; 0 for what cannot get into it.
+double PictureMotion_px(const Optics& optics, const RayScene& scene, const MidHits& mid, const Mover& mover,
+                        double span_s);
+
 // How far the picture moves [pixels] within span_s / 2 of mid-exposure, at most, for what is nearest_m away.
 double PictureMotion_px(const Optics& optics, const BodyMotion& camera, double span_s, double nearest_m);
 

@@ -49,17 +49,21 @@ std::vector<SubFrame> LightModel::SubFrames(const DepthSettings& settings) const
 }
 
 bool LightModel::Moves(const TofView& view) const {
-  return effects_.motion && (!view.camera.still() || view.scene.Moves(view.bodies));
+  return effects_.motion && (!view.camera.still() || !view.scene.Movers(view.bodies).empty());
 }
 
-// What stands can be taken from its plane where no edge comes near within the exposure.
+// A plane, moving or not, needs no rays where no edge, the camera's motion and its own together, comes near within the
+// exposure.
 std::vector<std::uint8_t> LightModel::Calm(const TofView& view, const MidHits& mid,
                                            const DepthSettings& settings) const {
-  if (view.scene.Moves(view.bodies)) return {};
   float nearest_m = 100.0f;
   for (const RayHit& hit : mid.hits)
     if (hit.geom >= 0) nearest_m = std::min(nearest_m, hit.range_m);
-  const double motion_px = PictureMotion_px(optics_, view.camera, sheet_.ExposureSpan_s(settings), nearest_m);
+  const double span_s = sheet_.ExposureSpan_s(settings);
+  double mover_px = 0.0;
+  for (const Mover& mover : view.scene.Movers(view.bodies))
+    mover_px = std::max(mover_px, PictureMotion_px(optics_, view.scene, mid, mover, span_s));
+  const double motion_px = PictureMotion_px(optics_, view.camera, span_s, nearest_m) + mover_px;
   const double reach = std::ceil(std::min(mid.grid.edge * motion_px, 1e6));
   return CalmSubRays(mid.grid, mid.hits, static_cast<int>(reach));
 }

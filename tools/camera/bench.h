@@ -11,6 +11,7 @@ namespace merlin {
 struct CameraBench {
   struct Depth {
     std::string model;
+    std::string actor{};  // a person who crosses ahead of the camera; empty: nobody does
     int width = 0, height = 0;
     double one_thread_ms = 0.0, threads_ms = 0.0;  // a frame with all effects
     double limit_one_thread_ms = 0.0, limit_two_threads_ms = 0.0;

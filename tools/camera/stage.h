@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "robot/types/se3.h"
+#include "sim/actors/actor_config.h"
 #include "sim/rays/ray_scene.h"
 #include "sim/tof/surroundings.h"
 #include "sim/tof/tof_camera.h"
@@ -49,8 +50,9 @@ Stage WallStage(const Wall& wall);
 struct RoomView {
   std::filesystem::path room, materials;
   bool curtain_closed = false;
-  Pose T_world_body = Pose::Identity();  // of the camera: x forward, y left, z up
-  std::optional<double> sun_w_m2_nm{};   // instead of the room's
+  Pose T_world_body = Pose::Identity();    // of the camera: x forward, y left, z up
+  std::optional<double> sun_w_m2_nm{};     // instead of the room's
+  std::vector<sim::ActorConfig> actors{};  // away until stage.bodies puts them somewhere
 };
 // Throws InputError: a room or materials file that cannot be used, nothing to see in it, a camera inside a geom, a sun
 // set where the room has none.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/world/room_box.h"
 #include "tests/sim/world/car_world.h"
 
 namespace merlin {
@@ -81,7 +82,9 @@ TEST(CarWatch, LosesACarThatLeavesTheRoomsBoxByAMetre) {
 }
 
 TEST(CarWatch, KnowsTheBoxOfEveryShape) {
-  const auto box = [](const std::string& room) { return RoomBox_m(*sim::MakeWorld(sim::Room(sim::kPlane + room))); };
+  const auto box = [](const std::string& room) {
+    return sim::RoomBox_m(*sim::MakeWorld(sim::Room(sim::kPlane + room)));
+  };
   const auto expect = [&](const std::string& room, double x0, double y0, double x1, double y1) {
     const auto got = box(room);
     ASSERT_TRUE(got) << room;
@@ -98,8 +101,9 @@ TEST(CarWatch, KnowsTheBoxOfEveryShape) {
 }
 
 TEST(CarWatch, LeavesObstaclesOutOfTheRoomsBox) {
-  const auto world = sim::MakeWorld(sim::Room(kArena), Pose::Identity(), {{.name = "x", .size_m = {20, 20, 1}}});
-  const auto box = RoomBox_m(*world);
+  const auto world =
+      sim::MakeWorld(sim::Room(kArena), Pose::Identity(), {{.appear_s = 1e3, .length_m = 20, .width_m = 20}});
+  const auto box = sim::RoomBox_m(*world);
   ASSERT_TRUE(box);
   EXPECT_NEAR(box->max().x(), 3.1, 1e-9);
 }

@@ -221,5 +221,30 @@ TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
   EXPECT_LE(ghosts, points / 1000);
 }
 
+// The same place and time, as an actor.
+TEST(CorridorObstacle, StopsBeforeASphereToo) {
+  const TemporaryFolder folder;
+  const RunReport report = DriveScenario(
+      "corridor_obstacle", folder.path() / "a",
+      {"obstacles=[]",
+       "actors=[{name: ball, shape: sphere, size_m: [0.4], material: dark_box, path: [[8, 0.2, -9.5]], until_s: 22}]"},
+      2, sim::Gl::kOff);
+  const Metrics& m = report.result.metrics;
+  EXPECT_EQ(report.result.verdict, Verdict::kPass);
+  EXPECT_EQ(m.collisions, 0);
+  EXPECT_GE(*m.obstacle_gap_m, 0.3);
+  EXPECT_GE(*m.obstacle_stop_s, 5.0);
+  EXPECT_GE(*m.distance_m, 9.0);
+}
+
+// A person who walks towards the car, waits before it, then passes it.
+TEST(CorridorVisitor, StopsStaysAndDrivesOnWithoutATouch) {
+  const TemporaryFolder folder;
+  const RunReport report = DriveScenario("corridor_visitor", folder.path() / "a", {}, 2, sim::Gl::kOff);
+  EXPECT_EQ(report.result.verdict, Verdict::kPass);
+  EXPECT_EQ(report.result.metrics.collisions, 0);
+  EXPECT_GE(*report.result.metrics.obstacle_stop_s, 3.0);
+}
+
 }  // namespace
 }  // namespace merlin
