@@ -1,4 +1,6 @@
-// The colour camera: MuJoCo's picture through the lens, onto the sensor, in 8 bit; exposure set by hand or by itself.
+// The colour camera. A frame takes three steps: MuJoCo draws what a pinhole would see (renderer), the picture is distorted
+// as the lens does (lens), and the sensor adds noise and converts to 8 bit (color_response). Exposure time and gain are
+// fixed or automatic.
 #pragma once
 
 #include <cstdint>

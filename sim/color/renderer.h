@@ -19,7 +19,7 @@ namespace merlin::sim {
 
 using merlin::Gl;
 
-// How far a camera may get from where it is while it exposes.
+// How far a camera may move while it exposes.
 struct Sway {
   double shift_m = 0.0;
   double turn_rad = 0.0;
@@ -46,7 +46,7 @@ class RenderSnapshot {
   std::vector<MovingGeom> MovingGeoms(const mjModel* model, const BodyMotions& bodies) const;
   // To where they are dt_s later than the snapshot.
   void Move(const std::vector<MovingGeom>& geoms, double dt_s);
-  // The same world from another place, no farther than the sway.
+  // The same world from another pose, no farther than the sway.
   void Look(const Pose& T_world_camera, const CameraModel& camera);
   mjvScene scene;
 };

@@ -1,4 +1,5 @@
-// How the twin's drive errs, as a real car's does. Every value has one that switches it off; IdealDrivetrain() has them all.
+// The errors of the twin's drive, as a real car has them. For each field one value switches its error off;
+// IdealDrivetrain() sets all of these.
 #pragma once
 
 #include <string>

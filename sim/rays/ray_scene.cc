@@ -16,7 +16,7 @@ namespace {
 // same bits on every machine that has it.
 constexpr char kDeviceConfig[] = "threads=1,set_affinity=0,max_isa=avx2";
 
-// A group that moves, or has a frame of its own: a scene of its own, and where it stands.
+// A group that moves or has a frame of its own: it has a scene of its own, and a pose.
 struct Instance {
   const RayGroup* group;
   EmbreeScene scene;
@@ -35,7 +35,7 @@ struct Instance {
     rtcSetGeometryMask(geometry.get(), MaskOf(of));
   }
 
-  // False: it stands there already.
+  // False: it was there already.
   bool Place(const Pose& T_world_group) {
     const Eigen::Matrix4f matrix = T_world_group.matrix().cast<float>();
     if (placed && matrix == T_world_group_last) return false;

@@ -1,6 +1,6 @@
-// A stand that holds the car's wheels off the floor and turns it about the vertical through its base's origin
-// (CarDescription::T_base_stand): for rooms that are mapped from one place. It moves the car as it likes, whatever the
-// forces; itself it is neither seen nor touched.
+// A turntable that holds the car's wheels off the floor and turns the car about a vertical axis (the origin of
+// CarDescription::T_base_stand), so that a room can be mapped from one place. It dictates the car's motion, whatever the
+// forces. The turntable itself cannot be seen or touched.
 #pragma once
 
 #include "robot/types/car.h"
@@ -14,13 +14,13 @@ constexpr double kStandHeight_m = 0.05;  // of the wheels above the floor
 class Turntable {
  public:
   Turntable() = default;
-  // T_world_base: of the car on the stand, at angle 0.
+  // T_world_base: of the car on the turntable at angle 0.
   Turntable(const CarDescription& car, const Pose& T_world_base, double rate_rad_s)
       : T_world_stand_(T_world_base * car.T_base_stand()),
         T_stand_base_(car.T_base_stand().inverse()),
         rate_rad_s_(rate_rad_s) {}
 
-  // Counter-clockwise seen from above, without end; not finite: ignored. It goes there at its rate.
+  // Counter-clockwise seen from above, any number of turns; not finite: ignored. It turns there at its rate.
   void Send(double angle_rad);
   void Step(Duration duration);
 

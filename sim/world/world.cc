@@ -30,7 +30,7 @@ void World::Step() {
   drive_.Follow(model_.get(), data_.get());  // only a sound state has counts
 }
 
-// The stand has the car where it wants it.
+// The turntable dictates the car's pose and velocity, whatever the forces.
 void World::TurnOnStand() {
   stand_->Step(kStep);
   const Pose T_world_base = stand_->T_world_base();

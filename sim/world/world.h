@@ -1,4 +1,15 @@
-// The world: a room (MJCF) with the car (CarDescription) in it, stepped by MuJoCo.
+// The world: a room (MJCF), the car (CarDescription) and actors in one MuJoCo model, stepped every 2 ms.
+//
+// One step, in its order:
+//   drive       the commands of the drive and the pan servo become voltages and set points
+//   mj_step2    forces and motion: qpos and qvel of the new instant
+//   turntable   turns the car, where it is on one
+//   actors      go to where they are at the new instant
+//   mj_step1    poses, distances and contacts of the new instant
+//   encoder     counts
+//
+// Frames: world (the room's; z up), base_link of the car (x forward, y left, z up, on the ground below the rear axle's
+// middle). world_setup.cc makes the model; what a room has to offer and what the car touches of it: room.h, solid.h.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -33,7 +44,7 @@ struct WorldOptions {
   std::uint64_t seed = 1;
   std::vector<ActorConfig> actors{};         // their models are files; materials are the caller's to know
   std::vector<ObstacleConfig> obstacles{};   // the same
-  std::optional<double> stand_rate_rad_s{};  // the car stands on a turntable that turns as fast as this, > 0
+  std::optional<double> stand_rate_rad_s{};  // the car is on a turntable that turns this fast, > 0; none: on the floor
 };
 
 // Two geoms that touch, the first of them the car's. A wheel on a geom named "floor*" is no contact.
@@ -65,13 +76,13 @@ class World {
   Time Now() const;
   Pose T_world_base() const;
   BodyMotion BaseMotion() const;
-  // Of a camera that sits there while the pan unit (if it moves) looks ahead.
+  // Of a camera whose pose in the car is this while the pan unit (if it moves) points ahead.
   BodyMotion CameraMotion(const Pose& T_base_camera) const;
   // Of every body, actors included.
   BodyMotions Motions() const;
   double Speed_m_s() const;  // of the rear axle's middle along x, signed
   std::vector<Touch> CarTouches() const;
-  // Whether a wheel stands on a geom named "floor*", or on anything else that is not the car and less than 45 degrees
+  // Whether a wheel touches a geom named "floor*", or on anything else that is not the car and less than 45 degrees
   // steep where it touches.
   bool WheelTouchesGround() const;
   bool IsCarGeom(int geom_id) const;
@@ -87,12 +98,12 @@ class World {
   DriveController& drive() { return drive_; }
   const DriveController& drive() const { return drive_; }
 
-  // Null: the car has none that moves; it stands on no turntable.
+  // Null: the car has no pan unit that moves; it is not on a turntable.
   PanServo* pan() { return pan_ ? &*pan_ : nullptr; }
   const PanServo* pan() const { return pan_ ? &*pan_ : nullptr; }
   Turntable* stand() { return stand_ ? &*stand_ : nullptr; }
 
-  // What of the room is other than it seems, a sentence each.
+  // Where the room behaves differently from what its file says, a sentence each.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
   // The outer outline of the room ("plan_xy_m"), empty if the room gives none; yaw of magnetic north.
