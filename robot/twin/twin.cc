@@ -225,10 +225,10 @@ struct Twin::Impl final : public Clock {
       pan.emplace(
           world, options.drive_rate_hz, [this](double angle_rad) { world.pan()->Send(angle_rad); },
           [this] { return world.pan()->Read_rad(world.data()); });
-    if (world.stand() != nullptr)
+    if (world.turntable() != nullptr)
       stand.emplace(
-          world, options.drive_rate_hz, [this](double angle_rad) { world.stand()->Send(angle_rad); },
-          [this] { return world.stand()->angle_rad(); });
+          world, options.drive_rate_hz, [this](double angle_rad) { world.turntable()->Send(angle_rad); },
+          [this] { return world.turntable()->angle_rad(); });
     Sample();
   }
 

@@ -19,7 +19,7 @@ void World::Step() {
   // mj_step in two halves, the first of the next step already taken: what depends on position and velocity stays
   // current.
   mj_step2(model_.get(), data_.get());
-  if (stand_) TurnOnStand();
+  if (turntable_) TurnOnTurntable();
   actors_.Move(data_.get(), Now(), T_world_base());
   mj_step1(model_.get(), data_.get());
   actors_.Look(model_.get(), data_.get());
@@ -31,12 +31,12 @@ void World::Step() {
 }
 
 // The turntable dictates the car's pose and velocity, whatever the forces.
-void World::TurnOnStand() {
-  stand_->Step(kStep);
-  const Pose T_world_base = stand_->T_world_base();
+void World::TurnOnTurntable() {
+  turntable_->Step(kStep);
+  const Pose T_world_base = turntable_->T_world_base();
   const Eigen::Quaterniond q(T_world_base.linear());
   const Eigen::Vector3d axle = T_world_base.linear() * car_.T_base_stand().translation();  // from the base to the axis
-  const Eigen::Vector3d turn(0.0, 0.0, stand_->speed_rad_s());
+  const Eigen::Vector3d turn(0.0, 0.0, turntable_->speed_rad_s());
   const int joint = model_->body_jntadr[base_body_];
   mjtNum *position = data_->qpos + model_->jnt_qposadr[joint], *velocity = data_->qvel + model_->jnt_dofadr[joint];
   Eigen::Vector3d::Map(position) = T_world_base.translation();

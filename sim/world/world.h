@@ -42,9 +42,10 @@ struct WorldOptions {
   DrivetrainConfig drivetrain{};  // how the true car and its drive differ from the description
   Materials materials{};          // of the room: the grip of floors, what can be driven through
   std::uint64_t seed = 1;
-  std::vector<ActorConfig> actors{};         // their models are files; materials are the caller's to know
-  std::vector<ObstacleConfig> obstacles{};   // the same
-  std::optional<double> stand_rate_rad_s{};  // the car is on a turntable that turns this fast, > 0; none: on the floor
+  std::vector<ActorConfig> actors{};        // their models are files; materials are the caller's to know
+  std::vector<ObstacleConfig> obstacles{};  // the same
+  std::optional<double>
+      turntable_rate_rad_s{};  // the car is on a turntable that turns this fast, > 0; none: on the floor
 };
 
 // Two geoms that touch, the first of them the car's. A wheel on a geom named "floor*" is no contact.
@@ -101,7 +102,7 @@ class World {
   // Null: the car has no pan unit that moves; it is not on a turntable.
   PanServo* pan() { return pan_ ? &*pan_ : nullptr; }
   const PanServo* pan() const { return pan_ ? &*pan_ : nullptr; }
-  Turntable* stand() { return stand_ ? &*stand_ : nullptr; }
+  Turntable* turntable() { return turntable_ ? &*turntable_ : nullptr; }
 
   // Where the room behaves differently from what its file says, a sentence each.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -126,11 +127,11 @@ class World {
 
   std::unique_ptr<mjModel, void (*)(mjModel*)> model_{nullptr, mj_deleteModel};
   std::unique_ptr<mjData, void (*)(mjData*)> data_{nullptr, mj_deleteData};
-  void TurnOnStand();
+  void TurnOnTurntable();
 
   DriveController drive_;
   std::optional<PanServo> pan_;
-  std::optional<Turntable> stand_;
+  std::optional<Turntable> turntable_;
   CarDescription car_;
   int base_body_ = -1, pan_body_ = -1;
   double wheel_radius_m_ = 0.0;

@@ -94,7 +94,7 @@ World::World(const WorldOptions& options) {
   RefuseStartInContact(options);
   drive_ = DriveController(model_.get(), options.car, drivetrain, options.seed);
   if (pans) pan_ = PanServo(model_.get(), options.car);
-  if (options.stand_rate_rad_s) stand_ = Turntable(options.car, T_world_base(), *options.stand_rate_rad_s);
+  if (options.turntable_rate_rad_s) turntable_ = Turntable(options.car, T_world_base(), *options.turntable_rate_rad_s);
 }
 
 void World::ReadNumerics(const std::string& room) {
@@ -156,7 +156,7 @@ void World::PutOnFloor(const WorldOptions& options) {
   if (!found)
     throw InputError(room, "the car does not start on the floor", "a geom named floor* below the start",
                      fmt::format("nothing at x {} m, y {} m", start.x(), start.y()));
-  const double lift_m = options.stand_rate_rad_s ? kStandHeight_m : 0.0;
+  const double lift_m = options.turntable_rate_rad_s ? kTurntableHeight_m : 0.0;
   data_->qpos[model_->jnt_qposadr[model_->body_jntadr[base_body_]] + 2] =
       start.z() + kFloorSearch_m - nearest_m + lift_m;
 }

@@ -110,7 +110,7 @@ TEST(CarWatch, LeavesObstaclesOutOfTheRoomsBox) {
 
 TEST(CarWatch, LosesACarWhoseWheelsTouchNothingForHalfASecondButNotOnItsStand) {
   const sim::TemporaryFile file("room.xml", sim::Room(kArena));
-  sim::World world({.room = file.path(), .car = sim::Merlin(), .stand_rate_rad_s = 1.0});  // held in the air
+  sim::World world({.room = file.path(), .car = sim::Merlin(), .turntable_rate_rad_s = 1.0});  // held in the air
   CarWatch free(world, false), on_stand(world, true);
   while (world.Now() < std::chrono::milliseconds(500)) world.Step(), free.Watch(world), on_stand.Watch(world);
   EXPECT_EQ(free.lost(), "");

@@ -102,7 +102,7 @@ TEST(Pan, PutsPointsWhereTheyAreWhileTheCamerasTurn) {
 TEST(Stand, TellsTheOdometryWhatTheWheelsDoNotKnow) {
   const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
   TwinOptions options = Options(room);
-  options.world.stand_rate_rad_s = 1.0;
+  options.world.turntable_rate_rad_s = 1.0;
   Twin twin(options);
   std::vector<std::pair<Time, Pose>> truth;
   const Pose T_world_start = twin.world().T_world_base();
