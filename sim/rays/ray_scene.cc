@@ -49,6 +49,8 @@ struct Instance {
 };
 
 constexpr int kPacket = 8;
+constexpr float kBoundMargin_m = 1e-2f;
+constexpr std::size_t kBoundsMax = 8;  // with more instances, Embree's own hierarchy is faster
 
 // Eight rays as Embree takes them; lanes beyond count repeat the first and are not valid.
 template <class Packet>
@@ -68,6 +70,27 @@ void Fill(Packet& ray, std::span<const Ray> rays, Panes panes) {
     ray.id[i] = ray.flags[i] = 0;
   }
 }
+
+// A sphere around an instance, world frame. Most packets of rays pass all of them by, and to ask Embree costs more.
+struct Bound {
+  Eigen::Vector3f middle{0, 0, 0};
+  float radius_m = 0.0f;
+
+  // Whether one of eight rays may meet it before its end; true where rounding leaves a doubt.
+  template <class Packet>
+  bool MayMeet(const Packet& ray) const {
+    const float cx = middle.x(), cy = middle.y(), cz = middle.z(), reach_m = radius_m + kBoundMargin_m;
+    int meets = 0;
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      const float tx = cx - ray.org_x[i], ty = cy - ray.org_y[i], tz = cz - ray.org_z[i];
+      const float along = tx * ray.dir_x[i] + ty * ray.dir_y[i] + tz * ray.dir_z[i];
+      const float px = tx - along * ray.dir_x[i], py = ty - along * ray.dir_y[i], pz = tz - along * ray.dir_z[i];
+      meets |=
+          (px * px + py * py + pz * pz <= reach_m * reach_m) & (along >= -reach_m) & (along - reach_m <= ray.tfar[i]);
+    }
+    return meets != 0;
+  }
+};
 
 struct Lanes {
   explicit Lanes(std::size_t count) {
@@ -130,7 +153,8 @@ struct RayScene::Impl {
   std::vector<int> body_of_geom;
   std::vector<Face> faces;
   EmbreeScene fixed, moving;
-  bool has_instances = false, fresh = true;  // fresh: never committed
+  std::vector<Bound> bounds;  // of the instances, where the last Update put them
+  bool fresh = true;          // never committed
 
   Impl(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane)
       : groups(GroupGeoms(model, skip_body, is_pane)),
@@ -152,7 +176,7 @@ struct RayScene::Impl {
       const Instance& made = instances.try_emplace(number, device.get(), group, number).first->second;
       rtcAttachGeometryByID(moving.get(), made.geometry.get(), number);
     }
-    has_instances = !instances.empty();
+    bounds.resize(instances.size());
     rtcCommitScene(fixed.get());
   }
 
@@ -167,17 +191,28 @@ struct RayScene::Impl {
 
   void Update(const BodyMotions& bodies, double dt_s) {
     bool moved = std::exchange(fresh, false);
+    std::size_t at = 0;
     for (auto& [number, instance] : instances) {
+      Bound& bound = bounds[at++];
       const RayGroup& group = groups[number];
       const Pose T_world_group = bodies[static_cast<std::size_t>(group.body)].At(dt_s) * group.T_body_group;
       if (!instance.Place(T_world_group)) continue;
       SetFaces(number, T_world_group);
+      const RayGroup::Sphere& around = spheres[number];
+      bound = {(T_world_group * around.middle).cast<float>(), static_cast<float>(around.radius_m)};
       moved = true;
     }
     if (!moved) return;
     rtcCommitScene(moving.get());
     if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE)
       throw MachineError("ray casting: Embree could not build its scene");
+  }
+
+  // Whether what moves is worth asking, once these rays have met what is fixed.
+  template <class Packet>
+  bool MayMeetMoving(const Packet& ray) const {
+    return bounds.size() > kBoundsMax ||
+           std::ranges::any_of(bounds, [&](const Bound& bound) { return bound.MayMeet(ray); });
   }
 
   RayHit ReadHit(const RTCRayHit8& packet, std::size_t i, const Eigen::Vector3f& direction_world) const {
@@ -240,7 +275,7 @@ void RayScene::Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes pan
     std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
     Intersect(lanes, impl_->fixed.get(), packet);
-    if (impl_->has_instances) Intersect(lanes, impl_->moving.get(), packet);
+    if (impl_->MayMeetMoving(packet.ray)) Intersect(lanes, impl_->moving.get(), packet);
     for (std::size_t i = 0; i < some.size(); ++i) hits[first + i] = impl_->ReadHit(packet, i, some[i].direction);
   }
 }
@@ -253,7 +288,7 @@ void RayScene::Occluded(std::span<const Ray> rays, std::span<std::uint8_t> block
     RTCRay8 packet;
     Fill(packet, some, panes);
     Occlude(lanes, impl_->fixed.get(), packet);
-    if (impl_->has_instances) Occlude(lanes, impl_->moving.get(), packet);
+    if (impl_->MayMeetMoving(packet)) Occlude(lanes, impl_->moving.get(), packet);
     for (std::size_t i = 0; i < some.size(); ++i) blocked[first + i] = packet.tfar[i] < 0.0f;
   }
 }
