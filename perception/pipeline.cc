@@ -22,7 +22,7 @@ void Pipeline::Add(const CompassReading& reading) {
     heading_.Update(reading.stamp, reading.yaw_rad, Yaw(*T_odom_base));
 }
 
-void Pipeline::Add(ColorFrame frame) { color_ = std::move(frame); }
+void Pipeline::Add(std::shared_ptr<const ColorFrame> frame) { color_ = std::move(frame); }
 
 std::optional<Pose> Pipeline::OdomAt(Time time) const {
   const auto T_odom_base = odometry_.At(time);

@@ -1,6 +1,7 @@
 // Perception as one sentence: filter, odometry, project, fuse.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -49,7 +50,7 @@ class Pipeline {
   // States and readings that are not finite are left out.
   void Add(const DriveState& state);
   void Add(const CompassReading& reading);
-  void Add(ColorFrame frame);
+  void Add(std::shared_ptr<const ColorFrame> frame);
   void AddPan(const PanState& state) { pan_.Add(state); }
   void AddStand(const PanState& state) { stand_.Add(state); }
   // Nothing until wheel odometry, and pan unit and stand where there are such, have told the first time.
@@ -65,7 +66,7 @@ class Pipeline {
   Odometry odometry_;
   Heading heading_;
   AngleTrack pan_, stand_;
-  std::optional<ColorFrame> color_;
+  std::shared_ptr<const ColorFrame> color_;
 };
 
 }  // namespace merlin

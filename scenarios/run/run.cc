@@ -86,7 +86,9 @@ class Session {
     faults_.Try([&] { folder_.Finish(ToJson(report.result)); });
     Conclude(ending, report);
     report.gl_name = plug_.renderer();
-    report.note = Joined(plug_.notes());
+    std::vector<std::string> notes = plug_.notes();
+    for (const Outage& outage : loop_.state().outages) notes.push_back(outage.Sentence());
+    report.note = Joined(notes);
     return report;
   }
 
@@ -95,18 +97,15 @@ class Session {
     const WallClock::time_point begin = WallClock::now();
     const Time first = robot_.clock->Now();
     Pacer pacer(options_, stop_);
-    const LoopObserver observer{
-        .depth = [&](const DepthFrame& frame) { frames_.Add(frame), plug_.Keep(frame.stamp); },
-        .color = [&](const ColorFrame& frame) { frames_.Add(frame); },
-        .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop_.slam().path_m(), decision.doing); },
-        .hand =
-            [&](Time now, const HandStatus& status) {
-              if (options_.hand_status) Tell([&] { options_.hand_status(now, status); });
-              pacer.Tick(now, loop_.slam().path_m(), Name(status.arbitration.driver));
-            },
-        .car_lost = [&] { return !plug_.ReasonToEnd().empty(); }};
+    const LoopObserver observer = [&](const LoopState& state) {
+      for (const auto& frame : state.heard.depth) frames_.Add(*frame), plug_.Keep(frame->stamp);
+      for (const auto& frame : state.heard.color) frames_.Add(*frame);
+      if (options_.station) Tell([&] { options_.station(state); });
+      pacer.Tick(state);
+      return plug_.ReasonToEnd().empty();
+    };
     Ending ending;
-    faults_.Try([&] { ending.end = loop_.Run(stop_, observer, options_.hand); });
+    faults_.Try([&] { ending.end = loop_.Run(stop_, observer, options_.manual); });
     figures_.wall_time_s = SecondsSince(begin);
     figures_.sim_time_s = Seconds(robot_.clock->Now() - first);
     figures_.real_time_factor = *figures_.sim_time_s / *figures_.wall_time_s;
@@ -120,8 +119,7 @@ class Session {
   std::string Reason(LoopEnd end) const {
     if (end == LoopEnd::kDeviceLost) {
       const std::string complaints = Joined(plug_.Complaints());
-      return fmt::format("the {} fell silent for a second{}", loop_.silent_device(),
-                         complaints.empty() ? "" : " (" + complaints + ")");
+      return loop_.state().stop + (complaints.empty() ? "" : " (" + complaints + ")");
     }
     if (end == LoopEnd::kBatteryEmpty)
       return fmt::format("the battery is empty: {:.2f} V without the motor, and the car stops below {:.2f} V",
@@ -194,7 +192,7 @@ class Session {
 
 RunReport RunScenario(const RunOptions& asked, const PlugMaker& make_plug, const std::atomic<bool>& stop) {
   const WallClock::time_point begin = WallClock::now();
-  if (IsOnStand(asked.scenario.task) && asked.hand)
+  if (IsOnStand(asked.scenario.task) && asked.manual)
     throw InputError("task.behavior", "turn_on_stand: nobody drives on the stand", "merlin run");
   RunOptions options = asked;
   std::vector<std::string> warnings;

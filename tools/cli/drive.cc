@@ -76,18 +76,18 @@ class Station {
 // What the operator sees: five times a second on a terminal, once a second elsewhere, and at once when the driver changes.
 class StatusLine {
  public:
-  void Show(Time now, const HandStatus& status) {
-    const bool changed = status.arbitration.driver != driver_;
-    driver_ = status.arbitration.driver;
-    if (now < next_ && !changed) return;
-    next_ = now + std::chrono::milliseconds(line_.on_terminal() ? 200 : 1000);
-    const char* battery = status.energy == EnergyLevel::kEnough ? ""
-                          : status.energy == EnergyLevel::kLow  ? " LOW"
-                                                                : " EMPTY";
-    line_.Show(fmt::format("{:7.1f} s  {:5.2f} m/s  steering {:+5.1f} deg  battery {:5.2f} V{}  {}{}{}", Seconds(now),
-                           status.speed_m_s, status.state.steering_rad * 180.0 / std::numbers::pi,
-                           status.state.battery_v, battery, Name(driver_), status.doing.empty() ? "" : ": ",
-                           status.doing));
+  void Show(const LoopState& state) {
+    const bool changed = state.arbitration.driver != driver_;
+    driver_ = state.arbitration.driver;
+    if (state.now < next_ && !changed) return;
+    next_ = state.now + std::chrono::milliseconds(line_.on_terminal() ? 200 : 1000);
+    const char* battery = state.energy == EnergyLevel::kEnough ? ""
+                          : state.energy == EnergyLevel::kLow  ? " LOW"
+                                                               : " EMPTY";
+    const std::string doing = driver_ == Driver::kAutonomy ? ": " + Doing(state) : "";
+    line_.Show(fmt::format("{:7.1f} s  {:5.2f} m/s  steering {:+5.1f} deg  battery {:5.2f} V{}  {}{}",
+                           Seconds(state.now), state.speed_m_s, state.drive.steering_rad * 180.0 / std::numbers::pi,
+                           state.drive.battery_v, battery, Name(driver_), doing));
   }
   ~StatusLine() { line_.Keep(); }
 
@@ -125,12 +125,12 @@ int Drive(const DriveArguments& arguments) {
   {
     StatusLine line;
     Station station(arguments, limits);
-    options.hand = [&](Time now) {
+    options.manual = [&](Time now) {
       ManualWish wish = station.Wish(now);
       wish.autonomy = wish.autonomy && arguments.autonomy;
       return radio ? radio->Send(wish, now) : wish;
     };
-    options.hand_status = [&line](Time now, const HandStatus& status) { line.Show(now, status); };
+    options.station = [&line](const LoopState& state) { line.Show(state); };
     report = RunScenario(options, interrupted);
   }
   const RunResult& result = report.result;

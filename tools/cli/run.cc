@@ -77,11 +77,11 @@ namespace {
 class Progress {
  public:
   explicit Progress(double duration_s) : duration_s_(duration_s) {}
-  void Show(Time now, double distance_m, const std::string& doing) {
-    const double now_s = Seconds(now);
+  void Show(const LoopState& state) {
+    const double now_s = Seconds(state.now);
     if (!line_.on_terminal() && now_s < next_s_) return;
     next_s_ = now_s + 10.0;
-    line_.Show(fmt::format("{:6.1f} s of {:.0f} s, {:6.2f} m: {}", now_s, duration_s_, distance_m, doing));
+    line_.Show(fmt::format("{:6.1f} s of {:.0f} s, {:6.2f} m: {}", now_s, duration_s_, state.path_m, Doing(state)));
   }
 
  private:
@@ -145,10 +145,7 @@ int Run(const RunArguments& arguments) {
   RunReport report;
   {
     Progress progress(options.scenario.duration_s);
-    if (!arguments.json)
-      options.progress = [&progress](Time now, double distance_m, const std::string& doing) {
-        progress.Show(now, distance_m, doing);
-      };
+    if (!arguments.json) options.progress = [&progress](const LoopState& state) { progress.Show(state); };
     report = RunScenario(options, interrupted);
   }
   if (arguments.json) {

@@ -184,12 +184,14 @@ void BenchLap(SlamBench& bench, const std::atomic<bool>& interrupted) {
   DriveLoop loop(twin.robot(), BelievedCar(scenario.car), scenario.perception, scenario.slam, scenario.task,
                  scenario.pilot);
   Times frames, closing;
-  const auto tick = [&](Time, const Decision&) {
+  const auto watch = [&](const LoopState& state) {
+    if (state.decided != state.now) return true;
     frames.Add(loop.stack_ms().back());
-    if (loop.slam().loops() > bench.loops) closing.Add(loop.stack_ms().back());
-    bench.loops = loop.slam().loops();
+    if (state.loops > bench.loops) closing.Add(loop.stack_ms().back());
+    bench.loops = state.loops;
+    return true;
   };
-  loop.Run(interrupted, {.depth = {}, .color = {}, .tick = tick});
+  loop.Run(interrupted, watch);
   bench.rows.push_back(RowOf("lap, every frame", frames, {.median_ms = 2.0, .p99_ms = 5.0, .max_ms = 50.0}));
   bench.rows.push_back(RowOf("lap, frames that close a loop", closing, {.max_ms = 50.0}));
 }

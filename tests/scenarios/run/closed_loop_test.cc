@@ -95,7 +95,7 @@ TEST(CorridorShort, EndsInGoodOrderWhenInterrupted) {
                      .threads = 2,
                      .pace = 0.0,
                      .progress = {}};
-  options.progress = [&stop](Time now, double, const std::string&) { stop = stop || now > std::chrono::seconds(4); };
+  options.progress = [&stop](const LoopState& state) { stop = stop || state.now > std::chrono::seconds(4); };
   options.pace = 20.0;  // so that progress is told of before the end
   const RunReport report = RunScenario(options, stop);
   EXPECT_EQ(report.result.verdict, Verdict::kInterrupted);
@@ -166,11 +166,12 @@ TEST(EmptyBattery, LeavesTheCarStandingWithAReserve) {
   Twin twin(options);
   DriveLoop loop(twin.robot(), options.world.car, {}, {}, {}, {});
   bool warned = false, drove = false;
-  const auto tick = [&](Time, const Decision& decision) {
-    warned = warned || decision.doing.ends_with("battery low");
+  const auto watch = [&](const LoopState& state) {
+    warned = warned || Doing(state).ends_with("battery low");
     drove = drove || twin.world().Speed_m_s() > 0.4;
+    return true;
   };
-  EXPECT_EQ(loop.Run(never, {.depth = {}, .color = {}, .tick = tick}), LoopEnd::kBatteryEmpty);
+  EXPECT_EQ(loop.Run(never, watch), LoopEnd::kBatteryEmpty);
   EXPECT_TRUE(warned);
   EXPECT_TRUE(drove);
   EXPECT_LT(std::abs(twin.world().Speed_m_s()), 0.01);
@@ -192,17 +193,16 @@ TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
 
   double wrapped_m = HUGE_VAL, slowest_m_s = HUGE_VAL;
   std::atomic<bool> stop{false};
-  const auto depth = [&](const DepthFrame& frame) {  // raw: the ghosts must be there for the test to mean anything
-    const double wall_ahead_m = 13.2 - twin.world().T_world_base().translation().x() - 0.3;
-    const float middle_m = frame.range_m[24 * 64 + 32];
-    if (std::abs(wall_ahead_m - 9.5) < 0.1) wrapped_m = middle_m;
-  };
-  const auto tick = [&](Time, const Decision&) {
+  const auto watch = [&](const LoopState& state) {
     const double x_m = twin.world().T_world_base().translation().x();
+    const double wall_ahead_m = 13.2 - x_m - 0.3;
+    for (const auto& frame : state.heard.depth)  // raw: the ghosts must be there for the test to mean anything
+      if (std::abs(wall_ahead_m - 9.5) < 0.1) wrapped_m = frame->range_m[24 * 64 + 32];
     if (x_m > -10.5 && x_m < 10.0) slowest_m_s = std::min(slowest_m_s, twin.world().Speed_m_s());
     stop = x_m > 10.2;
+    return true;
   };
-  loop.Run(stop, {.depth = depth, .color = {}, .tick = tick});
+  loop.Run(stop, watch);
   ASSERT_TRUE(stop) << "did not get to the end of the straight";
   EXPECT_NEAR(wrapped_m, 9.5 - UnambiguousRange_m(20e6), 0.3);
   EXPECT_GT(slowest_m_s, 0.45);
