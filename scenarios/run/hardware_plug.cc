@@ -1,18 +1,28 @@
 #include "scenarios/run/hardware_plug.h"
 
 #include "robot/base/error.h"
+#include "scenarios/config/believed_car.h"
 #include "scenarios/config/hardware_file.h"
+#include "scenarios/run/preflight.h"
 
 namespace merlin {
 namespace {
 
 constexpr Duration kReady = std::chrono::seconds(10);
 
+// Throws MachineError, a line for each fault, if there are any.
+void ThrowAll(const std::vector<std::string>& faults) {
+  std::string lines;
+  for (const std::string& fault : faults) lines += (lines.empty() ? "" : "\n") + fault;
+  if (!lines.empty()) throw MachineError(lines);
+}
+
 class HardwarePlug : public Plug {
  public:
   HardwarePlug(const HardwareConfig& config, const Scenario& scenario)
       : clock_(config.clock, Time::max()), hardware_(config, CamerasOf(scenario), clock_) {
     RequireReady(hardware_);
+    ThrowAll(PreflightAtRest(hardware_.robot(), BelievedCar(scenario.car)));
     clock_.EndAt(clock_.Now() + FromSeconds(scenario.duration_s));
   }
 
@@ -27,11 +37,7 @@ class HardwarePlug : public Plug {
 
 }  // namespace
 
-void RequireReady(HardwareRobot& robot) {
-  std::string faults;
-  for (const std::string& fault : robot.WaitUntilReady(kReady)) faults += (faults.empty() ? "" : "\n") + fault;
-  if (!faults.empty()) throw MachineError(faults);
-}
+void RequireReady(HardwareRobot& robot) { ThrowAll(robot.WaitUntilReady(kReady)); }
 
 void RequireNoTurntable(const Scenario& scenario) {
   if (IsOnStand(scenario.task))

@@ -50,6 +50,7 @@ TEST(Cli, RefusesBadUsageWithExitTwo) {
   ExpectRefused("run corridor_short --robot hardware:", "--robot", folder.path());
   ExpectRefused("run corridor_short --robot hardware:none.yaml", "none.yaml", folder.path());
   ExpectRefused("doctor --robot twin", "hardware:FILE", folder.path());
+  ExpectRefused("doctor --move", "--robot", folder.path());
   ExpectRefused("run corridor_short --out ''", "--out", folder.path());
   ExpectRefused("run corridor_short --duration ''", "--duration", folder.path());
   ExpectRefused("run corridor_short --duration -1", "--set: duration_s", folder.path());

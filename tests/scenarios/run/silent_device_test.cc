@@ -1,4 +1,4 @@
-// What the loop makes of devices that fall silent under way, in the twin.
+// What the loop and the run make of devices that fall silent under way, in the twin.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,8 +7,10 @@
 #include "robot/description/description.h"
 #include "robot/twin/twin.h"
 #include "scenarios/run/drive_loop.h"
+#include "scenarios/run/twin_plug.h"
 #include "tests/sim/world/car_world.h"
 #include "tests/support/muted_robot.h"
+#include "tests/support/temporary_folder.h"
 
 namespace merlin {
 namespace {
@@ -134,6 +136,61 @@ TEST_F(SilentDevice, TellsEachTickAsACopy) {
   }
   EXPECT_NEAR(static_cast<double>(frames), 59.0, 1.0);
   EXPECT_GT(counts, 100);
+}
+
+// The plug of the twin, one of whose devices falls silent at kFault.
+class PlugThatFails final : public Plug {
+ public:
+  PlugThatFails(std::unique_ptr<Plug> plug, bool compass)
+      : plug_(std::move(plug)), compass_(compass), muted_(plug_->robot()) {}
+  PlugTraits traits() const override { return plug_->traits(); }
+  Robot robot() override { return muted_.robot(); }
+  std::string ReasonToEnd() override {
+    const bool broken = plug_->robot().clock->Now() >= kFault;
+    (compass_ ? muted_.compass.muted : muted_.depth.muted) = broken;
+    return plug_->ReasonToEnd();
+  }
+  void Keep(Time stamp) override { plug_->Keep(stamp); }
+  std::vector<std::string> Complaints() const override { return {"its lamp is dark"}; }
+  std::optional<GroundTruth> Truth() override { return plug_->Truth(); }
+
+ private:
+  std::unique_ptr<Plug> plug_;
+  bool compass_;
+  MutedRobot muted_;
+};
+
+RunReport RunThatFails(const std::filesystem::path& out, bool compass) {
+  const std::atomic<bool> not_stopped{false};
+  return RunScenario(
+      {.name = "corridor_short",
+       .scenario = ReadScenario("corridor_short", {"duration_s=9", "checks={collisions_max: 0}"}),
+       .out = out,
+       .gl = Gl::kOff,
+       .threads = 1,
+       .pace = 0.0,
+       .progress = {}},
+      [=](const RunOptions& options) { return std::make_unique<PlugThatFails>(MakeTwinPlug(options), compass); },
+      not_stopped);
+}
+
+TEST(SilentDeviceRun, PassesWithoutItsCompassAndSaysSoInItsNote) {
+  const TemporaryFolder folder;
+  const RunReport report = RunThatFails(folder.path() / "a", true);
+  EXPECT_EQ(report.result.verdict, Verdict::kPass) << report.result.fault;
+  EXPECT_EQ(report.result.fault, "");
+  EXPECT_NE(report.note.find("the compass was silent from 4.0 s on, and the run went on without it"), std::string::npos)
+      << report.note;
+  EXPECT_GT(*report.result.metrics.distance_m, 2.5);
+}
+
+TEST(SilentDeviceRun, FailsWithoutItsDepthCameraAndNamesItAndItsComplaint) {
+  const TemporaryFolder folder;
+  const RunReport report = RunThatFails(folder.path() / "a", false);
+  EXPECT_EQ(report.result.verdict, Verdict::kFail);
+  EXPECT_EQ(report.result.fault, "the depth camera has been silent for 0.6 s (its lamp is dark)");
+  EXPECT_LT(*report.result.metrics.sim_time_s, 4.0 + 0.55 + 1.0);
+  EXPECT_NE(Contents(folder.path() / "a/result.json").find("the depth camera has been silent"), std::string::npos);
 }
 
 }  // namespace
