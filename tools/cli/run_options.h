@@ -1,4 +1,4 @@
-// What the subcommands that run a scenario take from their command lines alike.
+// Options that all subcommands which run a scenario have in common.
 #pragma once
 
 #include <string>

@@ -8,7 +8,7 @@ namespace {
 
 constexpr char kEscape = '\x1b';
 
-// The letter that an arrow key stands for.
+// The letter that has the same meaning as an arrow key.
 char Letter(char arrow) {
   switch (arrow) {
     case 'A':
