@@ -50,10 +50,6 @@ struct Arbitration {
   Driver driver = Driver::kNobody;
 };
 
-// Points of base_link to be, in the base frame, every 5 cm from the origin on, if the car keeps this steering (of the
-// wheels; clamped to the car's).
-std::vector<Eigen::Vector2d> ArcAhead(const CarDescription& car, double steering_rad, double length_m);
-
 class Arbiter {
  public:
   Arbiter(const CarDescription& car, const AvoidConfig& avoid, const ArbitrateConfig& config)

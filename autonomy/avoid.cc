@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/kinematics/limits.h"
+
 namespace merlin {
 
 std::optional<double> Avoid::SeenNow_m(const Observation& observation,
@@ -55,7 +57,7 @@ std::optional<double> Avoid::FreeWay_m(const Observation& observation, std::span
 
 double Avoid::SpeedLimit_m_s(std::optional<double> free_way_m) const {
   if (!free_way_m) return HUGE_VAL;
-  return std::sqrt(2.0 * config_.deceleration_m_s2 * std::max(0.0, *free_way_m - config_.stop_gap_m));
+  return SpeedToStopWithin_m_s(*free_way_m - config_.stop_gap_m, config_.deceleration_m_s2);
 }
 
 }  // namespace merlin

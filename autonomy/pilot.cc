@@ -4,6 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "robot/kinematics/ackermann.h"
+#include "robot/kinematics/limits.h"
+#include "robot/kinematics/motion.h"
+
 namespace merlin {
 namespace {
 
@@ -41,10 +45,7 @@ Pilot::Pilot(const CarDescription& car, const Task& task, const PilotConfig& con
     : car_(car), task_(task), config_(config), avoid_(FootprintOf(car), config.avoid) {}
 
 DriveCommand Pilot::Command(double speed_m_s, double steering_rad) const {
-  // The servo is told what it will report, the wheels do what is meant.
-  return {.speed_m_s = speed_m_s,
-          .steering_rad = steering_rad - car_.steering_offset_rad,
-          .valid_for = FromSeconds(config_.command_valid_s)};
+  return {.speed_m_s = speed_m_s, .steering_rad = steering_rad, .valid_for = FromSeconds(config_.command_valid_s)};
 }
 
 void Pilot::CountLaps(const Pose& T_map_base) {
@@ -100,8 +101,7 @@ Pilot::Pursuit Pilot::Pursue(const std::vector<Eigen::Vector2d>& path_base) cons
   if (far == path_base.end()) far = std::prev(path_base.end());
   const double curvature_1_m = 2.0 * far->y() / std::max(far->squaredNorm(), 0.04);
   Pursuit pursuit;
-  pursuit.steering_rad =
-      std::clamp(std::atan(car_.wheelbase_m * curvature_1_m), -car_.steering_max_rad, car_.steering_max_rad);
+  pursuit.steering_rad = ClampSteering_rad(car_, WheelsAngleForCurvature_rad(car_, curvature_1_m));
   pursuit.way_base = ArcAhead(car_, pursuit.steering_rad, far->norm());
   pursuit.way_base.insert(pursuit.way_base.end(), far, path_base.end());
   return pursuit;

@@ -10,14 +10,10 @@
 
 namespace merlin {
 
-// How much farther the mean of the four wheels rolls than the rear axle's middle, on a circle: the encoder sits behind
-// ideal differentials and counts the former. 1 at 0, 1.053 at 25 deg for wheelbase 0.33 m, track 0.26 m; even in the angle.
-double WheelMeanRatio(double wheelbase_m, double track_m, double steering_rad);
-
 class Odometry {
  public:
   // car: as calibrated, if it is.
-  explicit Odometry(const CarDescription& car);
+  explicit Odometry(const CarDescription& car) : car_(car) {}
   // States in order of stamps.
   void Update(const DriveState& state);
   // Pose of the car at a time between the oldest and newest state kept (about a second); clamped to these.
@@ -29,7 +25,7 @@ class Odometry {
     Time stamp;
     Pose T_odom_base;
   };
-  double wheelbase_m_, track_m_, metres_per_count_, steering_offset_rad_;
+  CarDescription car_;
   std::optional<DriveState> last_;
   std::deque<Knot> knots_;
 };

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "robot/base/error.h"
+#include "robot/kinematics/ackermann.h"
+#include "robot/kinematics/motion.h"
 
 namespace merlin {
 namespace {
@@ -57,16 +59,17 @@ DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const Percep
       pilot_(car, task, pilot),
       energy_(car, pilot.energy),
       arbiter_(car, pilot.avoid, pilot.arbitrate),
-      metres_per_count_(car.MetresPerCount()) {}
+      car_(car) {}
 
 void DriveLoop::Listen(const LoopObserver& observer) {
   while (auto state = Poll("drive", robot_.drive)) {
     last_drive_ = robot_.clock->Now();
     pipeline_.Add(*state);
     energy_.Update(*state);
-    const double counts = static_cast<double>(state->encoder_counts - status_.state.encoder_counts);
+    const std::int64_t counts = state->encoder_counts - status_.state.encoder_counts;
     if (status_.state.stamp > Time(0) && state->stamp > status_.state.stamp)
-      status_.speed_m_s = counts * metres_per_count_ / Seconds(state->stamp - status_.state.stamp);
+      status_.speed_m_s = Path_m(car_, counts, WheelsAngle_rad(car_, state->steering_rad)) /
+                          Seconds(state->stamp - status_.state.stamp);
     status_.state = *state;
   }
   while (const auto state = Poll("pan unit", robot_.pan)) pipeline_.AddPan(*state);
@@ -138,7 +141,9 @@ void DriveLoop::AdaptExposure(const DepthFrame& frame) {
     Ask("depth camera", [&] { robot_.depth->Configure(adapted); });
 }
 
-void DriveLoop::Send(const DriveCommand& command) {
+// The stack means the angle of the wheels; the servo takes the angle that it will report. Nobody else converts.
+void DriveLoop::Send(DriveCommand command) {
+  command.steering_rad = ServoAngle_rad(car_, command.steering_rad);
   Ask("drive", [&] { robot_.drive->Send(command); });
 }
 

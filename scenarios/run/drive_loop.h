@@ -25,7 +25,7 @@ using Hand = std::function<ManualWish(Time now)>;
 struct HandStatus {
   Arbitration arbitration;
   ManualWish wish;
-  double speed_m_s = 0.0;  // by the encoder
+  double speed_m_s = 0.0;  // of the rear axle's middle, by encoder and steering
   DriveState state;        // the last one
   EnergyLevel energy = EnergyLevel::kEnough;
   std::string doing;  // the pilot, if it drives
@@ -66,7 +66,7 @@ class DriveLoop {
   bool TickByHand(const LoopObserver& observer, const Hand& hand);  // true: the operator quits
   std::optional<DriveCommand> Advice(Time now) const;
   LoopEnd Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand);
-  void Send(const DriveCommand& command);
+  void Send(DriveCommand command);
   void Stand(FirstFault& faults);
   void AdaptExposure(const DepthFrame& frame);
 
@@ -82,7 +82,7 @@ class DriveLoop {
   std::optional<Decision> advice_;   // the pilot's newest, ...
   Time advised_{0};                  // ... and when it came
   HandStatus status_;
-  double metres_per_count_;
+  CarDescription car_;
   Time last_depth_{0}, last_drive_{0};
   std::vector<double> stack_ms_;
 };

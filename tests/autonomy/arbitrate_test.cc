@@ -130,17 +130,5 @@ TEST(Arbiter, TakesAWishThatIsNotFiniteForAHandThatIsOff) {
   }
 }
 
-TEST(ArcAhead, IsACircleOfTheCarsRadius) {
-  const auto straight = ArcAhead(Car(), 0.0, 1.0);
-  EXPECT_NEAR(straight.back().x(), 1.0, 0.051);
-  EXPECT_EQ(straight.back().y(), 0.0);
-  EXPECT_EQ(ArcAhead(Car(), 0.3, 0.0).size(), 1u);
-  const double radius_m = 0.33 / std::tan(0.3);
-  for (const double side : {1.0, -1.0})
-    for (const Eigen::Vector2d& p : ArcAhead(Car(), side * 0.3, 3.0))
-      EXPECT_NEAR((p - Eigen::Vector2d(0.0, side * radius_m)).norm(), radius_m, 0.03);
-  EXPECT_EQ(ArcAhead(Car(), 9.0, 1.0).back(), ArcAhead(Car(), Car().steering_max_rad, 1.0).back());
-}
-
 }  // namespace
 }  // namespace merlin

@@ -31,16 +31,6 @@ DriveState State(double time_s, double counts, double steering_rad) {
   return state;
 }
 
-TEST(WheelMean, IsOneStraightAheadAndFollowsTheGeometryInATurn) {
-  EXPECT_DOUBLE_EQ(WheelMeanRatio(0.33, 0.26, 0.0), 1.0);
-  for (const double deg : {1e-6, 1.0, 5.0, 10.0, 25.0}) {
-    const double steering_rad = deg * pi / 180.0;
-    EXPECT_NEAR(WheelMeanRatio(0.33, 0.26, steering_rad), MeanOfFourWheels(steering_rad), 1e-6) << deg;
-    EXPECT_DOUBLE_EQ(WheelMeanRatio(0.33, 0.26, -steering_rad), WheelMeanRatio(0.33, 0.26, steering_rad));
-  }
-  EXPECT_NEAR(WheelMeanRatio(0.33, 0.26, 10.0 * pi / 180.0), 1.008, 5e-4);
-}
-
 TEST(Odometry, KnowsNothingBeforeTheFirstState) { EXPECT_FALSE(Odometry(Car()).At(Time{0})); }
 
 TEST(Odometry, DrivesStraightForthAndBack) {

@@ -6,6 +6,8 @@
 
 #include "robot/base/random.h"
 #include "robot/description/description.h"
+#include "robot/kinematics/ackermann.h"
+#include "robot/kinematics/motion.h"
 #include "scenarios/config/names.h"
 
 namespace merlin {
@@ -57,7 +59,7 @@ StraightDrive DriveStraight(const sim::WorldOptions& twin, double way_m) {
   const Eigen::Vector3d start = drive.T_world_base().translation();
   const std::int64_t counts = drive.State().encoder_counts;
   drive.Send(kSpeed_m_s, 0.0);
-  while (static_cast<double>(drive.State().encoder_counts - counts) * twin.car.MetresPerCount() < way_m) drive.Step();
+  while (Path_m(twin.car, drive.State().encoder_counts - counts, 0.0) < way_m) drive.Step();
   drive.Stand();
   return {drive.State().encoder_counts - counts, (drive.T_world_base().translation() - start).norm()};
 }
@@ -98,12 +100,12 @@ class Comparison {
 
   void DriveTurn(double steering_rad, double turn_rad) {
     const double start_rad = turned_rad_;
-    drive_.Send(kSpeed_m_s, steering_rad - calibrated_.steering_offset_rad);
+    drive_.Send(kSpeed_m_s, ServoAngle_rad(calibrated_, steering_rad));
     while (std::abs(turned_rad_ - start_rad) < turn_rad) drive_.Step();
   }
   void DriveStraight(double way_m) {
     const double start_m = path_m_;
-    drive_.Send(kSpeed_m_s, -calibrated_.steering_offset_rad);
+    drive_.Send(kSpeed_m_s, ServoAngle_rad(calibrated_, 0.0));
     while (path_m_ - start_m < way_m) drive_.Step();
   }
   Manoeuvre End(const std::string& name) {
