@@ -11,7 +11,7 @@ double RestVoltage_v(const DriveState& state, double shaft_rad_s, const Drivetra
   const double current_a = std::abs(state.current_a);
   const double motor_v = drivetrain.resistance_ohm * state.current_a + drivetrain.motor_constant_v_s * shaft_rad_s;
   const double power_w = motor_v * state.current_a;
-  // The bridge never draws more from the battery than the motor has; a battery of 0 V gives none.
+  // The bridge never draws more from the battery than the motor takes; a battery of 0 V gives nothing.
   const double drawn_a = state.battery_v > 0.0 ? std::clamp(power_w / state.battery_v, -current_a, current_a) : 0.0;
   return state.battery_v + resistance_ohm * drawn_a;
 }

@@ -144,7 +144,7 @@ Decision Pilot::Decide(const Observation& observation, const std::optional<Pose>
     path_base.push_back((T_base_map * Eigen::Vector3d(path_map_[i].x(), path_map_[i].y(), 0.0)).head<2>());
 
   const Pursuit pursuit = Pursue(path_base);
-  const double limit_m_s = avoid_.SpeedLimit_m_s(avoid_.FreeWay_m(observation, pursuit.way_base));
+  const double limit_m_s = avoid_.SpeedLimit_m_s(avoid_.FreeDistance_m(observation, pursuit.way_base));
   const double wish_m_s = turn_side_ ? config_.turn_speed_m_s : config_.speed_m_s;
   const double speed_m_s = std::min(wish_m_s, limit_m_s) < 0.03 ? 0.0 : std::min(wish_m_s, limit_m_s);
   Decision decision{Command(speed_m_s, pursuit.steering_rad), false, "follows the corridor"};
