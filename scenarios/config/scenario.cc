@@ -55,6 +55,20 @@ void Anchor(std::string& name, const std::filesystem::path& folder) {
     name = std::filesystem::absolute(beside).lexically_normal().string();
 }
 
+// A behavior's former name still works, with a warning.
+void UseNewName(Scenario& scenario, const std::string& file, std::vector<std::string>& faults) {
+  std::string& name = scenario.task.behavior;
+  const BehaviorInfo* const behavior = FindBehavior(name);
+  if (behavior == nullptr) {
+    faults.push_back(file + ": task.behavior: unknown behavior '" + name + "'; did you mean '" +
+                     NearestName(name, BehaviorNames()) + "'?");
+  } else if (name != behavior->name) {
+    scenario.warnings.push_back("the behavior '" + name + "' is now called '" + behavior->name +
+                                "': please use the new name in " + file);
+    name = behavior->name;
+  }
+}
+
 }  // namespace
 
 Scenario ReadScenario(const std::string& name, const std::vector<std::string>& overrides) {
@@ -80,10 +94,7 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
   if (!root["room"].IsDefined()) faults.push_back(file.string() + ": room: missing; which room to drive in");
   if (scenario.curtain != "open" && scenario.curtain != "closed")
     faults.push_back(file.string() + ": curtain: expected open or closed, got '" + scenario.curtain + "'");
-  const std::vector<std::string> behaviors = BehaviorNames();
-  if (std::ranges::find(behaviors, scenario.task.behavior) == behaviors.end())
-    faults.push_back(file.string() + ": task.behavior: unknown behavior '" + scenario.task.behavior +
-                     "'; did you mean '" + NearestName(scenario.task.behavior, behaviors) + "'?");
+  UseNewName(scenario, file.string(), faults);
   for (const ObstacleEvent& event : scenario.obstacles)
     if (!(event.disappear_s > event.appear_s))
       faults.push_back(file.string() + ": obstacles: one disappears before it appears");

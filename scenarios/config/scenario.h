@@ -152,6 +152,7 @@ struct Scenario {
   PerceptionConfig perception;
   SlamConfig slam;
   PilotConfig pilot;
+  std::vector<std::string> warnings;  // one sentence each, of what the file's author should know; not in the file
 };
 
 template <class Visitor>

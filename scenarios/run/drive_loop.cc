@@ -90,8 +90,13 @@ std::optional<Decision> DriveLoop::Decide(const LoopObserver& observer, bool for
     auto observation = pipeline_.Process(std::move(*frame));
     if (!observation) continue;
     const auto T_map_base = slam_.Update(*observation);
-    if (forget) pilot_.Forget();
-    Decision decision = pilot_.Decide(*observation, T_map_base, slam_);
+    Decision decision = pilot_.Decide({.now = robot_.clock->Now(),
+                                       .observation = *observation,
+                                       .T_map_base = T_map_base,
+                                       .local_map = slam_.local_map(),
+                                       .grid = slam_.occupancy(),
+                                       .lost_frames = slam_.lost_frames(),
+                                       .taken_over = forget});
     if (energy_.level() == EnergyLevel::kLow) decision.doing += "; battery low";
     stack_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
     seen_ = std::move(observation);

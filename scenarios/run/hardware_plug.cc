@@ -34,8 +34,9 @@ void RequireReady(HardwareRobot& robot) {
 }
 
 void RequireNoTurntable(const Scenario& scenario) {
-  if (IsOnStand(scenario.task))
-    throw InputError("task.behavior", "turn_on_stand: only the twin has a stand", "merlin run with --robot twin");
+  if (IsOnTurntable(scenario.task))
+    throw InputError("task.behavior", scenario.task.behavior + ": only the twin has a turntable",
+                     "merlin run with --robot twin");
 }
 
 std::unique_ptr<Plug> MakeHardwarePlug(const RunOptions& options) {

@@ -194,8 +194,8 @@ class Session {
 
 RunReport RunScenario(const RunOptions& asked, const PlugMaker& make_plug, const std::atomic<bool>& stop) {
   const WallClock::time_point begin = WallClock::now();
-  if (IsOnStand(asked.scenario.task) && asked.hand)
-    throw InputError("task.behavior", "turn_on_stand: nobody drives on the stand", "merlin run");
+  if (IsOnTurntable(asked.scenario.task) && asked.hand)
+    throw InputError("task.behavior", asked.scenario.task.behavior + ": nobody drives on the turntable", "merlin run");
   RunOptions options = asked;
   std::vector<std::string> warnings;
   const CarDescription car = BelievedCar(options.scenario.car);
@@ -203,6 +203,7 @@ RunReport RunScenario(const RunOptions& asked, const PlugMaker& make_plug, const
   const std::unique_ptr<Plug> plug = make_plug(options);
   RunReport report = Session(options, *plug, car, SecondsSince(begin), stop).Run();
   warnings.insert(warnings.begin(), car.warnings.begin(), car.warnings.end());
+  warnings.insert(warnings.begin(), options.scenario.warnings.begin(), options.scenario.warnings.end());
   for (const std::string& warning : warnings) report.note += (report.note.empty() ? "" : "; ") + warning;
   return report;
 }

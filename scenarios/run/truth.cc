@@ -22,7 +22,7 @@ std::vector<sim::Obstacle> ObstaclesOf(const Scenario& scenario) {
 }
 
 Truth::Truth(const Scenario& scenario, const sim::World& world)
-    : car_(world, IsOnStand(scenario.task)), events_(scenario.obstacles), placed_(events_.size(), false) {
+    : car_(world, IsOnTurntable(scenario.task)), events_(scenario.obstacles), placed_(events_.size(), false) {
   recent_.push_back({world.Now(), world.T_world_base()});
   if (!events_.empty()) obstacle_stop_s_ = 0.0;
 }

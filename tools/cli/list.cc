@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "autonomy/pilot.h"
+#include "autonomy/behaviors/table.h"
 #include "scenarios/config/names.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/description.h"

@@ -61,6 +61,17 @@ TEST(Scenario, NamesUnknownKeysWithLineAndTheNearest) {
   EXPECT_TRUE(Has(said, "s.yaml:4: duraton_s: unknown key; did you mean 'duration_s'?")) << said;
 }
 
+TEST(Scenario, TakesTheFormerNameOfABehaviorWithAWarning) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "s.yaml";
+  std::ofstream(file) << "room: hall\ntask: {behavior: turn_on_stand, angle_deg: 90}\n";
+  const Scenario scenario = ReadScenario(file.string(), {});
+  EXPECT_EQ(scenario.task.behavior, "turn_on_turntable");
+  ASSERT_EQ(scenario.warnings.size(), 1u);
+  EXPECT_TRUE(Has(scenario.warnings[0], "'turn_on_stand' is now called 'turn_on_turntable'")) << scenario.warnings[0];
+  EXPECT_TRUE(ReadScenario("room_turn_180", {}).warnings.empty());
+}
+
 TEST(Scenario, ReportsEveryValueOutOfRangeAtOnce) {
   const std::string said = Complaint(
       "room: hall\nduration_s: -1\nsensors: {depth: {rate_hz: .nan}}\nseed: -4\ntask: {laps: 1.5}\npilot: {speed_m_s: "

@@ -119,7 +119,7 @@ TEST_F(ManualDrive, GivesTheWheelToThePilotAndTakesItBack) {
               {6.5, [&] { pipe_.Axis(1, 0); }},
               {8.0, [&] { pipe_.Close(); }}});
   EXPECT_EQ(At(4.5).driver, Driver::kAutonomy);
-  EXPECT_NEAR(At(4.5).speed_m_s, PilotConfig{}.speed_m_s, 0.05);
+  EXPECT_NEAR(At(4.5).speed_m_s, FollowCorridorConfig{}.speed_m_s, 0.05);
   EXPECT_EQ(At(6.4).driver, Driver::kManual);
   EXPECT_LT(At(6.4).speed_m_s, -0.5);
   EXPECT_EQ(At(7.9).driver, Driver::kAutonomy);

@@ -1,4 +1,4 @@
-#include "autonomy/corridor.h"
+#include "autonomy/behaviors/corridor.h"
 
 #include <algorithm>
 #include <array>
@@ -31,7 +31,8 @@ std::vector<WallPoint> WallPoints(const VoxelMap& map, const Pose& T_map_axis, c
   return points;
 }
 
-// Direction of the walls modulo 90 degrees, nearest to the hint: the mean of exp(4 i angle) does not care which wall.
+// The direction of the walls, of the four possible ones the nearest to the hint: the mean of exp(4 i angle) is the same
+// for all four.
 double AxisYaw(const std::vector<WallPoint>& points, double hint_rad) {
   std::complex<double> sum = 0.0;
   for (const WallPoint& point : points) sum += std::pow(std::complex<double>(point.n.x(), point.n.y()), 4);
@@ -39,8 +40,9 @@ double AxisYaw(const std::vector<WallPoint>& points, double hint_rad) {
   return WrapPi(hint_rad + std::arg(sum) / 4.0);  // normals are in the hint's frame: arg / 4 is within 45 deg of it
 }
 
-// Distance of the wall on one side (+1 left, -1 right): of the bins at least half as full as the fullest the farthest, since
-// pillars, cabinets and radiators stand before a wall.
+// Distance of the wall on one side (+1 left, -1 right). Surfaces that face the car are counted in bins of their distance;
+// the wall is the farthest bin that is at least half as full as the fullest, since pillars, cabinets and radiators stand
+// before a wall.
 std::optional<double> SideWall(const std::vector<WallPoint>& points, double side, const CorridorConfig& config) {
   std::vector<int> bins(static_cast<std::size_t>(config.side_max_m / kBin_m) + 2, 0);
   for (const WallPoint& point : points) {
@@ -64,7 +66,7 @@ std::optional<double> SideWall(const std::vector<WallPoint>& points, double side
   return side * sum / count;
 }
 
-// Nearest x at which points that face the car cover the middle from side to side.
+// The nearest x at which surfaces that face the car cover the middle from side to side.
 std::optional<double> EndWall(const std::vector<WallPoint>& points, double middle_m, const CorridorConfig& config) {
   const int columns = std::max(1, static_cast<int>(std::lround(2.0 * config.front_half_width_m / 0.1)));
   std::vector<double> facing_x;
@@ -88,7 +90,8 @@ std::optional<double> EndWall(const std::vector<WallPoint>& points, double middl
   return std::nullopt;
 }
 
-// Whether a way leads off to one side just before the end wall: free cells beyond the wall's line, nothing in between.
+// Whether a passage leads off to one side just before the end wall: free cells beyond the line of the wall, and nothing
+// occupied in between.
 bool SideOpen(const OccupancyGrid& grid, const Pose& T_map_axis, const Corridor& corridor, double side,
               const CorridorConfig& config) {
   const double half_m = 0.5 * corridor.width_m.value_or(2.0 * config.side_distance_m);
