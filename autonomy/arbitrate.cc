@@ -19,14 +19,14 @@ const char* Name(Driver driver) {
   }
 }
 
-double Arbiter::SpeedLimit_m_s(Time now, const ManualWish& manual, const Observation* seen) {
+double Arbiter::SpeedLimit_m_s(Time now, const ManualCommand& manual, const Observation* seen) {
   if (manual.speed_m_s <= 0.0) return HUGE_VAL;
   if (seen == nullptr || Seconds(now - seen->stamp) > config_.blind_after_s) return 0.0;
   const auto arc_base = ArcAhead(car_, manual.steering_rad, config_.watched_m);
   return avoid_.SpeedLimit_m_s(avoid_.FreeDistance_m(*seen, arc_base));
 }
 
-Arbitration Arbiter::Decide(Time now, const ManualWish& manual, const std::optional<DriveCommand>& autonomy,
+Arbitration Arbiter::Decide(Time now, const ManualCommand& manual, const std::optional<DriveCommand>& autonomy,
                             const Observation* seen) {
   const Duration valid_for = FromSeconds(config_.command_valid_s);
   const Arbitration halt{{.valid_for = valid_for}, Driver::kNobody};

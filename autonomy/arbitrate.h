@@ -18,7 +18,7 @@
 namespace merlin {
 
 // What the operator commands with stick, keys or radio, as last heard.
-struct ManualWish {
+struct ManualCommand {
   Time heard{0};               // the last sign of life of the input device
   bool held = false;           // the operator drives: the stick is pushed, a key is down
   double speed_m_s = 0.0;      // negative: backwards
@@ -60,11 +60,11 @@ class Arbiter {
 
   // autonomy: what the pilot would do, if it may drive at all; it has looked out for obstacles itself. seen: the newest
   // observation; null before the first. A manual command that is not finite counts as none.
-  Arbitration Decide(Time now, const ManualWish& manual, const std::optional<DriveCommand>& autonomy,
+  Arbitration Decide(Time now, const ManualCommand& manual, const std::optional<DriveCommand>& autonomy,
                      const Observation* seen);
 
  private:
-  double SpeedLimit_m_s(Time now, const ManualWish& manual, const Observation* seen);
+  double SpeedLimit_m_s(Time now, const ManualCommand& manual, const Observation* seen);
 
   CarDescription car_;
   ArbitrateConfig config_;

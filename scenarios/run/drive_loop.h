@@ -19,12 +19,12 @@ namespace merlin {
 enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost, kBatteryEmpty, kQuit, kCarLost };
 
 // An operator's hand, asked at every tick.
-using Hand = std::function<ManualWish(Time now)>;
+using Hand = std::function<ManualCommand(Time now)>;
 
 // What an operator wants to know.
 struct HandStatus {
   Arbitration arbitration;
-  ManualWish wish;
+  ManualCommand wish;
   double speed_m_s = 0.0;  // of the rear axle's middle, by encoder and steering
   DriveState state;        // the last one
   EnergyLevel energy = EnergyLevel::kEnough;

@@ -30,11 +30,11 @@ Observation Blocked(double gap_m) {
   return observation;
 }
 
-ManualWish Drives(double speed_m_s, double steering_rad = 0.0) {
+ManualCommand Drives(double speed_m_s, double steering_rad = 0.0) {
   return {.heard = kNow, .held = true, .speed_m_s = speed_m_s, .steering_rad = steering_rad};
 }
 
-Arbitration Decide(const ManualWish& manual, const std::optional<DriveCommand>& autonomy, const Observation* seen) {
+Arbitration Decide(const ManualCommand& manual, const std::optional<DriveCommand>& autonomy, const Observation* seen) {
   return Arbiter(Car(), {}, {}).Decide(kNow, manual, autonomy, seen);
 }
 
@@ -48,7 +48,7 @@ void ExpectHalt(const Arbitration& arbitration, Driver driver) {
 
 TEST(Arbiter, LetsTheOperatorBeatAutonomy) {
   const Observation free = Free();
-  ManualWish manual = Drives(0.7, -0.2);
+  ManualCommand manual = Drives(0.7, -0.2);
   manual.autonomy = true;
   const Arbitration arbitration = Decide(manual, kPilot, &free);
   EXPECT_EQ(arbitration.driver, Driver::kManual);
@@ -59,7 +59,7 @@ TEST(Arbiter, LetsTheOperatorBeatAutonomy) {
 
 TEST(Arbiter, LetsAutonomyDriveOnlyWhereItIsSwitchedOnAndTheOperatorDoesNot) {
   const Observation free = Free();
-  ManualWish manual{.heard = kNow};
+  ManualCommand manual{.heard = kNow};
   ExpectHalt(Decide(manual, kPilot, &free), Driver::kNobody);
   manual.autonomy = true;
   const Arbitration arbitration = Decide(manual, kPilot, &free);
@@ -72,7 +72,7 @@ TEST(Arbiter, LetsAutonomyDriveOnlyWhereItIsSwitchedOnAndTheOperatorDoesNot) {
 TEST(Arbiter, StopsTheOperatorBeforeAnObstacleUnlessItIsOverridden) {
   const Observation blocked = Blocked(0.4);  // AvoidConfig keeps half a metre
   ExpectHalt(Decide(Drives(0.5), std::nullopt, &blocked), Driver::kObstacleStop);
-  ManualWish manual = Drives(0.5);
+  ManualCommand manual = Drives(0.5);
   manual.override_stop = true;
   const Arbitration arbitration = Decide(manual, std::nullopt, &blocked);
   EXPECT_EQ(arbitration.driver, Driver::kManual);
@@ -111,7 +111,7 @@ TEST(Arbiter, StopsAheadWhereItSeesNothing) {
 
 TEST(Arbiter, StopsEverythingWhenTheLinkIsSilent) {
   const Observation free = Free();
-  ManualWish manual = Drives(0.5);
+  ManualCommand manual = Drives(0.5);
   manual.autonomy = true;
   for (const bool held : {true, false}) {
     manual.held = held;

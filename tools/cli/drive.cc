@@ -55,13 +55,13 @@ class Station {
       joystick_.emplace(arguments.joystick);
     fmt::print(stderr, "{}", joystick_ ? kStickHelp : kKeysHelp);
   }
-  ManualWish Wish(Time now) {
+  ManualCommand Wish(Time now) {
     if (joystick_) {
       const bool there = joystick_->Read();
       return stick_.Update(joystick_->state(), there, now);
     }
     keys_.Feed(terminal_->Read(), now);
-    ManualWish wish = keys_.Wish(now);
+    ManualCommand wish = keys_.Wish(now);
     wish.quit = wish.quit || !terminal_->there();
     return wish;
   }
@@ -126,7 +126,7 @@ int Drive(const DriveArguments& arguments) {
     StatusLine line;
     Station station(arguments, limits);
     options.hand = [&](Time now) {
-      ManualWish wish = station.Wish(now);
+      ManualCommand wish = station.Wish(now);
       wish.autonomy = wish.autonomy && arguments.autonomy;
       return radio ? radio->Send(wish, now) : wish;
     };

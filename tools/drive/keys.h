@@ -26,7 +26,7 @@ class Keys {
   // What was typed, in pieces of any size. Unknown keys do nothing.
   void Feed(std::string_view typed, Time now);
   // As of now; heard is now: a terminal that nobody touches is there.
-  ManualWish Wish(Time now) const;
+  ManualCommand Wish(Time now) const;
 
  private:
   void Press(char key, bool shift, Time now);

@@ -14,7 +14,7 @@ double Travel(double axis) {
 
 }  // namespace
 
-ManualWish Stick::Update(const joystick::State& state, bool there, Time now) {
+ManualCommand Stick::Update(const joystick::State& state, bool there, Time now) {
   if (!there) {
     wish_.held = wish_.override_stop = false;
     wish_.speed_m_s = wish_.steering_rad = 0.0;

@@ -17,11 +17,11 @@ class Stick {
   explicit Stick(const HandLimits& limits) : limits_(limits) {}
 
   // there: the joystick is; without it the hand is off and the wish ages. The autonomy button switches on and off.
-  ManualWish Update(const joystick::State& state, bool there, Time now);
+  ManualCommand Update(const joystick::State& state, bool there, Time now);
 
  private:
   HandLimits limits_;
-  ManualWish wish_;
+  ManualCommand wish_;
   bool autonomy_was_down_ = true;  // one that is down from the start is no press
 };
 

@@ -98,7 +98,7 @@ class BrokenRun : public ::testing::Test {
     DriveLoop loop(robot, sim::Merlin(), {}, {}, {}, {});
     const auto hand = [&](Time now) {
       fastest_m_s_ = std::max(fastest_m_s_, twin_->world().Speed_m_s());
-      return ManualWish{.heard = now, .held = true, .speed_m_s = 0.8};
+      return ManualCommand{.heard = now, .held = true, .speed_m_s = 0.8};
     };
     std::string thrown;
     try {
@@ -278,7 +278,7 @@ TEST(LostCar, FailsTheRunWithTheReason) {
                                                                                    <geom type="box" size="1 .1 1" pos="0 -1.1 1"/>)"));
   RunOptions options = OptionsFor(room.path(), folder.path() / "a", 20);
   options.hand = [](Time now) {
-    return ManualWish{.heard = now, .held = true, .speed_m_s = 0.8, .override_stop = true};
+    return ManualCommand{.heard = now, .held = true, .speed_m_s = 0.8, .override_stop = true};
   };
   const RunReport report = RunScenario(options, never_stop);
   EXPECT_EQ(report.result.verdict, Verdict::kFail);

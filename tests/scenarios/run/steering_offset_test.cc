@@ -41,7 +41,7 @@ TEST(SteeringOffset, IsTakenOffOnceOnTheWayToTheServo) {
   DriveLoop loop({.clock = &clock, .depth = &depth, .drive = &drive}, car, {}, {}, {}, {});
   // Backwards, where nothing looks.
   loop.Run(never, {},
-           [](Time now) { return ManualWish{.heard = now, .held = true, .speed_m_s = -0.3, .steering_rad = 0.2}; });
+           [](Time now) { return ManualCommand{.heard = now, .held = true, .speed_m_s = -0.3, .steering_rad = 0.2}; });
   ASSERT_GE(drive.sent.size(), 2u);
   EXPECT_EQ(drive.sent.front().speed_m_s, -0.3);
   EXPECT_DOUBLE_EQ(drive.sent.front().steering_rad, 0.15);

@@ -132,7 +132,7 @@ TEST(Stand, IsTheTwinsAlone) {
                      .progress = {}};
   EXPECT_THROW(RunScenario(options, never), InputError);
   options.robot = RobotKind::kTwin;
-  options.hand = [](Time) { return ManualWish{}; };
+  options.hand = [](Time) { return ManualCommand{}; };
   EXPECT_THROW(RunScenario(options, never), InputError);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "a"));
 }
