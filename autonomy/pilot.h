@@ -51,8 +51,8 @@ struct Decision {
   DriveCommand command;  // steering: of the wheels
   bool done = false;     // the task is finished; the command is to stand
   Activity activity = Activity::kIsDone;
-  std::string doing;                  // the same for people: "follows the corridor", "waits for an obstacle", ...
-  std::optional<double> stand_rad{};  // where the turntable is to turn, from its start; none: nothing new
+  std::string doing;                      // the same for people: "follows the corridor", "waits for an obstacle", ...
+  std::optional<double> turntable_rad{};  // where the turntable is to turn, from its start; none: nothing new
 };
 
 class Pilot {

@@ -39,8 +39,8 @@ struct Rig {
   Pose T_base_depth = Pose::Identity();
   std::optional<ColorCameraSheet> color;  // none: no colour
   Pose T_base_color = Pose::Identity();
-  bool pans = false;      // a pan unit turns the cameras: their poses are those while it looks ahead
-  bool on_stand = false;  // the car stands on a turntable: what that turns, the wheels do not know
+  bool pans = false;          // a pan unit turns the cameras: their poses are those while it looks ahead
+  bool on_turntable = false;  // the car stands on a turntable: what that turns, the wheels do not know
 };
 
 class Pipeline {
@@ -51,12 +51,12 @@ class Pipeline {
   void Add(const CompassReading& reading);
   void Add(ColorFrame frame);
   void AddPan(const PanState& state) { pan_.Add(state); }
-  void AddStand(const PanState& state) { stand_.Add(state); }
-  // Nothing until wheel odometry, and pan unit and stand where there are such, have told the first time.
+  void AddTurntable(const PanState& state) { turntable_.Add(state); }
+  // Nothing until wheel odometry, and pan unit and turntable where there are such, have reported for the first time.
   std::optional<Observation> Process(DepthFrame frame);
 
  private:
-  std::optional<Pose> OdomAt(Time time) const;                               // T_odom_base, the stand's turn included
+  std::optional<Pose> OdomAt(Time time) const;  // T_odom_base, with the turn of the turntable
   std::optional<Pose> CameraAt(const Pose& T_base_camera, Time time) const;  // as the pan unit stands
 
   Rig rig_;
@@ -64,7 +64,7 @@ class Pipeline {
   std::vector<Eigen::Vector3f> rays_;
   Odometry odometry_;
   Heading heading_;
-  AngleTrack pan_, stand_;
+  AngleTrack pan_, turntable_;
   std::optional<ColorFrame> color_;
 };
 

@@ -18,8 +18,8 @@ struct Robot {
   ColorCamera* color = nullptr;
   Compass* compass = nullptr;
   Drive* drive = nullptr;
-  PanUnit* pan = nullptr;    // turns the cameras
-  PanUnit* stand = nullptr;  // turns the car that stands on it
+  PanUnit* pan = nullptr;        // turns the cameras
+  PanUnit* turntable = nullptr;  // turns the car that stands on it
 };
 
 }  // namespace merlin

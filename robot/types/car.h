@@ -110,7 +110,7 @@ struct CarDescription {
 
   // Of a turntable the car stands on: through the base's origin, so that a turn moves no true pose from its place. (On a
   // small circle the judge would take the noise of the path for a turn of the map.)
-  Pose T_base_stand() const { return Pose::Identity(); }
+  Pose T_base_turntable() const { return Pose::Identity(); }
 
   double MetresPerCount() const {  // of the four-wheel mean's path
     return 2.0 * std::numbers::pi * wheel_radius_m / (drivetrain.gear * drivetrain.encoder_counts_per_motor_turn);

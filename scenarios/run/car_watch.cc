@@ -53,15 +53,15 @@ std::optional<Eigen::AlignedBox2d> RoomBox_m(const sim::World& world) {
   return room;
 }
 
-CarWatch::CarWatch(const sim::World& world, bool on_stand)
-    : on_stand_(on_stand),
+CarWatch::CarWatch(const sim::World& world, bool on_turntable)
+    : on_turntable_(on_turntable),
       start_z_m_(world.T_world_base().translation().z()),
       room_m_(RoomBox_m(world)),
       on_ground_(world.Now()) {}
 
 void CarWatch::Watch(const sim::World& world) {
   if (!lost_.empty()) return;
-  if (on_stand_ || world.WheelTouchesGround()) on_ground_ = world.Now();
+  if (on_turntable_ || world.WheelTouchesGround()) on_ground_ = world.Now();
   if (const std::string reason = Reason(world); !reason.empty())
     lost_ = fmt::format("at {:.3f} s {}", Seconds(world.Now()), reason);
 }

@@ -15,8 +15,8 @@ std::optional<Eigen::AlignedBox2d> RoomBox_m(const sim::World& world);
 
 class CarWatch {
  public:
-  // on_stand: the car stands on the turntable, where its wheels are to touch nothing.
-  CarWatch(const sim::World& world, bool on_stand);
+  // on_turntable: the car stands on the turntable, where its wheels are to touch nothing.
+  CarWatch(const sim::World& world, bool on_turntable);
 
   // After every step.
   void Watch(const sim::World& world);
@@ -28,7 +28,7 @@ class CarWatch {
  private:
   std::string Reason(const sim::World& world) const;
 
-  bool on_stand_;
+  bool on_turntable_;
   double start_z_m_;
   std::optional<Eigen::AlignedBox2d> room_m_;
   Time on_ground_;  // when a wheel last touched it

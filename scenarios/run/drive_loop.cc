@@ -24,7 +24,7 @@ Rig RigOf(const Robot& robot, const CarDescription& car) {
     rig.T_base_color = robot.color->Info().T_base_camera;
   }
   rig.pans = robot.pan != nullptr && car.pan;
-  rig.on_stand = robot.stand != nullptr;
+  rig.on_turntable = robot.turntable != nullptr;
   return rig;
 }
 
@@ -73,7 +73,7 @@ void DriveLoop::Listen(const LoopObserver& observer) {
     status_.state = *state;
   }
   while (const auto state = Poll("pan unit", robot_.pan)) pipeline_.AddPan(*state);
-  while (const auto state = Poll("stand", robot_.stand)) pipeline_.AddStand(*state);
+  while (const auto state = Poll("turntable", robot_.turntable)) pipeline_.AddTurntable(*state);
   while (const auto reading = Poll("compass", robot_.compass)) pipeline_.Add(*reading);
   while (auto frame = Poll("colour camera", robot_.color)) {
     if (observer.color) observer.color(*frame);
@@ -110,7 +110,8 @@ bool DriveLoop::Tick(const LoopObserver& observer) {
   bool done = false;
   while (const auto decision = Decide(observer, false)) {
     Send(decision->command);
-    if (robot_.stand != nullptr && decision->stand_rad) Ask("stand", [&] { robot_.stand->Send(*decision->stand_rad); });
+    if (robot_.turntable != nullptr && decision->turntable_rad)
+      Ask("turntable", [&] { robot_.turntable->Send(*decision->turntable_rad); });
     done = decision->done;
     if (observer.tick) observer.tick(robot_.clock->Now(), *decision);
   }

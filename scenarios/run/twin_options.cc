@@ -42,7 +42,8 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
       throw InputError("car.pan", "the car '" + scenario.car.model + "' has no joint that turns its cameras");
     twin.world.car.pan->moves = true;
   }
-  if (IsOnTurntable(scenario.task)) twin.world.stand_rate_rad_s = scenario.task.rate_deg_s * std::numbers::pi / 180.0;
+  if (IsOnTurntable(scenario.task))
+    twin.world.turntable_rate_rad_s = scenario.task.rate_deg_s * std::numbers::pi / 180.0;
   twin.seed = scenario.seed;
   const std::filesystem::path depth_file = DepthCameraFile(sensors.depth.camera);
   twin.depth = {ReadDepthCameraSheet(depth_file), ReadDepthCameraErrors(depth_file), SettingsOf(sensors.depth),

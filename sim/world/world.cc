@@ -96,7 +96,7 @@ World::World(const WorldOptions& options) {
   RefuseStartInContact(options);
   drive_ = DriveController(model_.get(), options.car, drivetrain, options.seed);
   if (pans) pan_ = PanServo(model_.get(), options.car);
-  if (options.stand_rate_rad_s) stand_ = Turntable(options.car, T_world_base(), *options.stand_rate_rad_s);
+  if (options.turntable_rate_rad_s) turntable_ = Turntable(options.car, T_world_base(), *options.turntable_rate_rad_s);
 }
 
 World::~World() = default;
@@ -183,7 +183,7 @@ void World::PutOnFloor(const WorldOptions& options) {
   if (!found)
     throw InputError(room, "the car does not start on the floor", "a geom named floor* below the start",
                      fmt::format("nothing at x {} m, y {} m", start.x(), start.y()));
-  const double lift_m = options.stand_rate_rad_s ? kStandHeight_m : 0.0;
+  const double lift_m = options.turntable_rate_rad_s ? kTurntableHeight_m : 0.0;
   data_->qpos[model_->jnt_qposadr[model_->body_jntadr[base_body_]] + 2] =
       start.z() + kFloorSearch_m - nearest_m + lift_m;
 }
@@ -218,7 +218,7 @@ void World::Step() {
   // mj_step in two halves, the first of the next step already taken: what depends on position and velocity stays
   // current.
   mj_step2(model_.get(), data_.get());
-  if (stand_) TurnOnStand();
+  if (turntable_) FollowTurntable();
   mj_step1(model_.get(), data_.get());
   for (int i = 0; i < mjNWARNING; ++i)
     if (data_->warning[i].number > 0)
@@ -227,13 +227,14 @@ void World::Step() {
   drive_.Follow(model_.get(), data_.get());  // only a sound state has counts
 }
 
-// The stand has the car where it wants it.
-void World::TurnOnStand() {
-  stand_->Step(kStep);
-  const Pose T_world_base = stand_->T_world_base();
+// The car is where the turntable has it.
+void World::FollowTurntable() {
+  turntable_->Step(kStep);
+  const Pose T_world_base = turntable_->T_world_base();
   const Eigen::Quaterniond q(T_world_base.linear());
-  const Eigen::Vector3d axle = T_world_base.linear() * car_.T_base_stand().translation();  // from the base to the axis
-  const Eigen::Vector3d turn(0.0, 0.0, stand_->speed_rad_s());
+  const Eigen::Vector3d axle =
+      T_world_base.linear() * car_.T_base_turntable().translation();  // from the base to the axis
+  const Eigen::Vector3d turn(0.0, 0.0, turntable_->speed_rad_s());
   const int joint = model_->body_jntadr[base_body_];
   mjtNum *position = data_->qpos + model_->jnt_qposadr[joint], *velocity = data_->qvel + model_->jnt_dofadr[joint];
   Eigen::Vector3d::Map(position) = T_world_base.translation();

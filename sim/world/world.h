@@ -39,7 +39,7 @@ struct WorldOptions {
   DrivetrainConfig drivetrain{};  // how the true car and its drive differ from the description
   Materials materials{};          // of the room: the grip of floors, what can be driven through
   std::uint64_t seed = 1;
-  std::optional<double> stand_rate_rad_s{};  // the car stands on a turntable that turns as fast as this, > 0
+  std::optional<double> turntable_rate_rad_s{};  // the car stands on a turntable that turns as fast as this, > 0
 };
 
 // Two geoms that touch, the first of them the car's. A wheel on a geom named "floor*" is no contact.
@@ -91,7 +91,7 @@ class World {
   // Null: the car has none that moves; it stands on no turntable.
   PanServo* pan() { return pan_ ? &*pan_ : nullptr; }
   const PanServo* pan() const { return pan_ ? &*pan_ : nullptr; }
-  Turntable* stand() { return stand_ ? &*stand_ : nullptr; }
+  Turntable* turntable() { return turntable_ ? &*turntable_ : nullptr; }
 
   // What of the room is other than it seems, a sentence each.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -117,11 +117,11 @@ class World {
 
   std::unique_ptr<mjModel, void (*)(mjModel*)> model_{nullptr, mj_deleteModel};
   std::unique_ptr<mjData, void (*)(mjData*)> data_{nullptr, mj_deleteData};
-  void TurnOnStand();
+  void FollowTurntable();
 
   DriveController drive_;
   std::optional<PanServo> pan_;
-  std::optional<Turntable> stand_;
+  std::optional<Turntable> turntable_;
   CarDescription car_;
   int base_body_ = -1, pan_body_ = -1;
   double wheel_radius_m_ = 0.0;

@@ -149,7 +149,7 @@ TEST(Pilot, StandsOnTheTurntableUntilItHasTurnedEvenIfItIsLost) {
     const Decision decision = pilot.Decide(drive.Now(i < 15 ? 100 : 0));
     ExpectStands(decision, i < 20 ? Activity::kTurnsOnTurntable : Activity::kIsDone);
     EXPECT_EQ(decision.done, i == 20);
-    EXPECT_DOUBLE_EQ(*decision.stand_rad, -pi);
+    EXPECT_DOUBLE_EQ(*decision.turntable_rad, -pi);
   }
 }
 

@@ -106,13 +106,13 @@ TEST(CarWatch, LeavesObstaclesOutOfTheRoomsBox) {
 
 TEST(CarWatch, LosesACarWhoseWheelsTouchNothingForHalfASecondButNotOnItsStand) {
   const sim::TemporaryFile file("room.xml", sim::Room(kArena));
-  sim::World world({.room = file.path(), .car = sim::Merlin(), .stand_rate_rad_s = 1.0});  // held in the air
-  CarWatch free(world, false), on_stand(world, true);
-  while (world.Now() < std::chrono::milliseconds(500)) world.Step(), free.Watch(world), on_stand.Watch(world);
+  sim::World world({.room = file.path(), .car = sim::Merlin(), .turntable_rate_rad_s = 1.0});  // held in the air
+  CarWatch free(world, false), on_turntable(world, true);
+  while (world.Now() < std::chrono::milliseconds(500)) world.Step(), free.Watch(world), on_turntable.Watch(world);
   EXPECT_EQ(free.lost(), "");
-  for (int i = 0; i < 1000; ++i) world.Step(), free.Watch(world), on_stand.Watch(world);
+  for (int i = 0; i < 1000; ++i) world.Step(), free.Watch(world), on_turntable.Watch(world);
   EXPECT_EQ(free.lost(), "at 0.502 s no wheel of the car had touched the ground for 0.5 s");
-  EXPECT_EQ(on_stand.lost(), "");
+  EXPECT_EQ(on_turntable.lost(), "");
 }
 
 // Onto a plate that is no floor: whatever carries the wheels is ground, a wall beside them is not.
