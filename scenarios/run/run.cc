@@ -148,7 +148,7 @@ class Session {
       if (robot_.color != nullptr) result.hashes.color = frames_.color.Hex();
     }
     result.metrics = WithOwnFigures(measured.metrics);
-    result.checks = Evaluate(options_.scenario.checks, result.metrics, options_.name);
+    result.checks = Evaluate(options_.scenario.checks, result.metrics, plug_.traits().knows_truth, options_.name);
     return result;
   }
 
@@ -165,6 +165,7 @@ class Session {
           static_cast<std::int64_t>(robot_.depth->Status().missed + (robot_.color ? robot_.color->Status().missed : 0));
     });
     metrics.peak_rss_mb = PeakRss_mb();
+    if (!plug_.traits().knows_truth) metrics.stack_rss_mb = metrics.peak_rss_mb;  // no simulation in this process
     return metrics;
   }
 

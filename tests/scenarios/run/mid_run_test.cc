@@ -267,7 +267,7 @@ TEST(Progress, DoesNotStopTheCarWhereNobodyReadsIt) {
   };
   const RunReport report = RunScenario(options, never_stop);
   EXPECT_GT(calls, 0);
-  EXPECT_EQ(report.result.verdict, Verdict::kPass) << report.result.fault;
+  EXPECT_EQ(report.result.verdict, Verdict::kNotJudged) << report.result.fault;
 }
 
 // By hand, out of a room that is open at its end.
