@@ -10,9 +10,9 @@
 #include "autonomy/pilot.h"
 #include "perception/pipeline.h"
 #include "robot/base/config.h"
+#include "robot/types/drivetrain_config.h"
+#include "robot/types/steel.h"
 #include "scenarios/judge/result.h"
-#include "sim/compass.h"
-#include "sim/drive/drivetrain_config.h"
 #include "slam/slam.h"
 
 namespace merlin {
@@ -33,7 +33,7 @@ void Visit(Visitor& v, CarStart& c) {
 struct CarChoice {
   std::string model = "merlin";  // models/<name>/<name>.urdf, or a path
   CarStart start;
-  sim::DrivetrainConfig drivetrain;  // of the twin: how the true car differs from its model
+  DrivetrainConfig drivetrain;  // of the twin: how the true car differs from its model
   bool pan = false;         // the unit that turns the cameras moves (pan_joint of the model); false: it is held ahead
   std::string calibration;  // what the stack believes: a file of `merlin calibrate odometry`; empty: the model
 };
@@ -91,8 +91,8 @@ void Visit(Visitor& v, ColorSensor& c) {
 
 struct CompassSensor {
   double rate_hz = 10.0;
-  double noise_rad = 0.0087;      // one sigma of each angle; 0.5 deg (data sheets: 0.3-1 deg)
-  std::vector<sim::Steel> steel;  // of the twin: what bends its field
+  double noise_rad = 0.0087;  // one sigma of each angle; 0.5 deg (data sheets: 0.3-1 deg)
+  std::vector<Steel> steel;   // of the twin: what bends its field
 };
 
 template <class Visitor>

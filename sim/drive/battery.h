@@ -1,7 +1,7 @@
 // The car's battery: what its voltage is under load, and how long it lasts.
 #pragma once
 
-#include "sim/drive/drivetrain_config.h"
+#include "robot/types/drivetrain_config.h"
 
 namespace merlin::sim {
 

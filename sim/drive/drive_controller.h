@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "robot/types/car.h"
+#include "robot/types/drivetrain_config.h"
 #include "robot/types/measurements.h"
 #include "sim/drive/battery.h"
-#include "sim/drive/drivetrain_config.h"
 #include "sim/drive/encoder.h"
 #include "sim/drive/steering_servo.h"
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "sim/drive/drivetrain_config.h"
+#include "robot/types/drivetrain_config.h"
 
 namespace merlin::sim {
 

@@ -2,8 +2,8 @@
 // (sim/drive/drivetrain.h).
 #pragma once
 
+#include "robot/types/drivetrain_config.h"
 #include "robot/types/time.h"
-#include "sim/drive/drivetrain_config.h"
 
 namespace merlin::sim {
 

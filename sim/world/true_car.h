@@ -2,7 +2,7 @@
 #pragma once
 
 #include "robot/types/car.h"
-#include "sim/drive/drivetrain_config.h"
+#include "robot/types/drivetrain_config.h"
 
 namespace merlin::sim {
 

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "robot/types/car.h"
+#include "robot/types/drivetrain_config.h"
 #include "robot/types/measurements.h"
 #include "robot/types/se3.h"
 #include "robot/types/time.h"
 #include "sim/drive/drive_controller.h"
-#include "sim/drive/drivetrain_config.h"
 #include "sim/world/materials.h"
 #include "sim/world/motion.h"
 #include "sim/world/pan_servo.h"

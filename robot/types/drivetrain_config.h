@@ -5,7 +5,7 @@
 
 #include "robot/base/config.h"
 
-namespace merlin::sim {
+namespace merlin {
 
 // Ten nickel-metal-hydride cells: their voltage falls with the charge, and with the current.
 struct BatteryConfig {
@@ -77,4 +77,4 @@ inline DrivetrainConfig IdealDrivetrain() {
   return ideal;
 }
 
-}  // namespace merlin::sim
+}  // namespace merlin
