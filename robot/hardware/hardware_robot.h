@@ -17,6 +17,7 @@ namespace merlin {
 
 // Which device is where: the file that `--robot hardware:FILE` names.
 struct HardwareConfig {
+  std::string car;  // the car that these devices belong to, by the name in its description; empty: any
   RealClockConfig clock;
   MicrocontrollerConfig drive;
   std::optional<Compass3dmConfig> compass;  // not listed: the car has none
@@ -26,6 +27,7 @@ struct HardwareConfig {
 
 template <class Visitor>
 void Visit(Visitor& v, HardwareConfig& c) {
+  v("car", c.car);
   v("clock", c.clock);
   v("drive", c.drive);
   v("compass", c.compass);

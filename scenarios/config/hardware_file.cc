@@ -9,6 +9,7 @@
 #include "robot/base/error.h"
 #include "robot/base/yaml_visitor.h"
 #include "robot/description/description.h"
+#include "scenarios/config/hardware_check.h"
 #include "scenarios/config/names.h"
 
 namespace merlin {
@@ -29,7 +30,16 @@ HardwareConfig ReadHardwareFile(const std::filesystem::path& yaml) {
   std::string all;
   for (const std::string& fault : faults) all += (all.empty() ? "" : "\n") + fault;
   if (!all.empty()) throw InputError(all);
+  RequireDistinctDevices(config, yaml);
   return config;
+}
+
+std::string ToYaml(const HardwareConfig& config) {
+  YAML::Emitter out;
+  out.SetDoublePrecision(17);
+  HardwareConfig copy = config;
+  YamlWriter(out).Write(copy);
+  return std::string(out.c_str()) + "\n";
 }
 
 HardwareCameras CamerasOf(const Scenario& scenario) {

@@ -1,6 +1,7 @@
 #include "scenarios/run/hardware_plug.h"
 
 #include "robot/base/error.h"
+#include "scenarios/config/hardware_check.h"
 #include "scenarios/config/hardware_file.h"
 
 namespace merlin {
@@ -40,7 +41,9 @@ void RequireNoTurntable(const Scenario& scenario) {
 
 std::unique_ptr<Plug> MakeHardwarePlug(const RunOptions& options) {
   RequireNoTurntable(options.scenario);
-  return std::make_unique<HardwarePlug>(ReadHardwareFile(options.hardware_file), options.scenario);
+  const HardwareConfig config = ReadHardwareFile(options.hardware_file);
+  RequireFits(config, options.scenario, options.hardware_file);
+  return std::make_unique<HardwarePlug>(config, options.scenario);
 }
 
 }  // namespace merlin

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robot/base/error.h"
+#include "scenarios/config/hardware_check.h"
 #include "scenarios/config/hardware_file.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/doctor.h"
@@ -43,7 +44,9 @@ int CheckRobot(const std::string& robot, const std::string& scenario, bool json)
   if (!robot.starts_with(hardware) || robot.size() == hardware.size())
     throw InputError("--robot", "no devices to check", "hardware:FILE, which names them", "'" + robot + "'");
   const HardwareConfig config = ReadHardwareFile(robot.substr(hardware.size()));
-  const auto reports = CheckDevices(config, CamerasOf(ReadScenario(scenario, {})), kListen);
+  const Scenario drives = ReadScenario(scenario, {});
+  RequireFits(config, drives, robot.substr(hardware.size()));
+  const auto reports = CheckDevices(config, CamerasOf(drives), kListen);
   if (json) PrintJson(robot, reports);
   for (const DeviceReport& report : reports)
     if (!json) fmt::print("{}\n", report.works() ? report.device + ": works" : report.complaint);
