@@ -148,6 +148,8 @@ void DriveLoop::Stand(FirstFault& faults) {
   std::optional<DriveState> before;
   while (robot_.clock->Now() - begin < kStandLimit) {
     faults.Try([&] { Send({.speed_m_s = 0.0, .steering_rad = 0.0, .valid_for = kSilent}); });
+    // A drive that has gone tells nothing more: its microcontroller brakes by itself.
+    if (robot_.drive->Status().health == DeviceStatus::Health::kAbsent) return;
     bool goes_on = false;
     faults.Try([&] { goes_on = robot_.clock->WaitUntil(robot_.clock->Now() + period_); });
     if (!goes_on) return;
