@@ -30,6 +30,7 @@ int Main(int argc, char** argv) {
   int exit_code = kPass;
   AddRun(app, exit_code);
   AddDrive(app, exit_code);
+  AddEmulate(app, exit_code);
   AddCamera(app, exit_code);
   AddCalibrate(app, exit_code);
   AddOptimize(app, exit_code);
