@@ -1,4 +1,9 @@
-// Obstacle avoidance, always first: how far the way ahead is free, and how fast one may drive towards what is there.
+// Obstacle avoidance, which comes first: how far the car can drive along its path before it touches something that the
+// depth camera sees, and how fast it may drive towards that.
+//
+// The footprint of the car, widened by a margin, is moved along the path. Every point between the floor and the top of the
+// car that it would touch is an obstacle; a few points are taken for noise. An obstacle that drops out of sight is
+// remembered for a moment. Nothing is known of what is behind the car or beside it: the camera looks ahead.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,14 +20,14 @@ namespace merlin {
 struct AvoidConfig {
   double margin_m = 0.08;                  // [0, 2] kept free on either side of the car
   double height_min_m = 0.08;              // [0, 2] lower points are floor
-  double height_max_m = 0.6;               // [0, 5] higher ones pass over the mast; guess
-  int points_min = 4;                      // [1, 1000] fewer points in the way are noise; guess
+  double height_max_m = 0.6;               // [0, 5] higher points are above the mast; guess
+  int points_min = 4;                      // [1, 1000] fewer points than this are noise; guess
   double stop_gap_m = 0.5;                 // [0.05, 5] the car stands with at least this free before its front
   double deceleration_m_s2 = 0.5;          // [0.05, 5] braking it plans with; the car can do 2
   double hold_s = 0.5;                     // [0, 10] an obstacle that drops out of sight is believed this long
-  int saturated_min = 30;                  // [1, 1e5] saturated pixels straight ahead that mean: something close
-  double saturated_half_angle_rad = 0.15;  // [0, 1.6] straight ahead
-  double aside_max_rad = 0.2;  // [0, 1.6] a camera turned farther to a side does not see the way; half its view
+  int saturated_min = 30;                  // [1, 1e5] so many saturated pixels straight ahead mean something close
+  double saturated_half_angle_rad = 0.15;  // [0, 1.6] what counts as straight ahead
+  double aside_max_rad = 0.2;  // [0, 1.6] a camera turned farther to a side does not see the path; half its view
 };
 
 template <class Visitor>
@@ -39,31 +44,37 @@ void Visit(Visitor& v, AvoidConfig& c) {
   v("aside_max_rad", c.aside_max_rad, {0.0, 1.6});
 }
 
+// A slower speed would only let the car creep: where no more is allowed, it halts.
+constexpr double kCreep_m_s = 0.03;
+
 class Avoid {
  public:
   Avoid(const Footprint& footprint, const AvoidConfig& config) : footprint_(footprint), config_(config) {}
 
-  // Way the car can drive along the path (points of its base_link to be, in the base frame, in order, from the origin
-  // on) until its footprint, turned along the path, touches something. Nothing: no obstacle seen on it. Zero: something is too close
-  // to measure, or the camera looks aside.
-  std::optional<double> FreeWay_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base);
+  // The length of the path that the car can drive until its footprint, turned along the path, touches something.
+  // path_base: positions of the base's origin, in the base frame and in driving order, from the present one on.
+  // Nothing: no obstacle is seen on the path. Zero: something is too close to measure, or the camera looks aside.
+  std::optional<double> FreeDistance_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base);
 
-  // The fastest speed from which the car, braking as planned, still stands stop_gap_m before the obstacle.
-  double SpeedLimit_m_s(std::optional<double> free_way_m) const;
+  // The highest speed from which the car, braking as planned, still stands stop_gap_m before the obstacle. Infinite without
+  // one.
+  double SpeedLimit_m_s(std::optional<double> free_m) const;
 
  private:
   std::optional<double> SeenNow_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base) const;
-  std::optional<double> WayUntilTouch_m(const Eigen::Vector2d& point_base,
-                                        std::span<const Eigen::Vector2d> path_base) const;
+  std::optional<double> DistanceUntilTouch_m(const Eigen::Vector2d& point_base,
+                                             std::span<const Eigen::Vector2d> path_base) const;
+
+  // The free distance as last seen, and where.
+  struct Memory {
+    Time stamp;
+    Pose T_odom_base;
+    double free_m;
+  };
 
   Footprint footprint_;
   AvoidConfig config_;
-  struct Sight {
-    Time stamp;
-    Pose T_odom_base;
-    double free_way_m;
-  };
-  std::optional<Sight> last_;
+  std::optional<Memory> last_;
 };
 
 }  // namespace merlin

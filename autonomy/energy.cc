@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "robot/kinematics/motion.h"
 
 namespace merlin {
 
@@ -10,7 +11,7 @@ double RestVoltage_v(const DriveState& state, double shaft_rad_s, const Drivetra
   const double current_a = std::abs(state.current_a);
   const double motor_v = drivetrain.resistance_ohm * state.current_a + drivetrain.motor_constant_v_s * shaft_rad_s;
   const double power_w = motor_v * state.current_a;
-  // The bridge never draws more from the battery than the motor has; a battery of 0 V gives none.
+  // The bridge never draws more from the battery than the motor takes; a battery of 0 V gives nothing.
   const double drawn_a = state.battery_v > 0.0 ? std::clamp(power_w / state.battery_v, -current_a, current_a) : 0.0;
   return state.battery_v + resistance_ohm * drawn_a;
 }
@@ -22,10 +23,8 @@ void Energy::Update(const DriveState& state) {
   last_ = state;
   if (!before) return;
   const double period_s = Seconds(state.stamp - before->stamp);
-  const double turns = static_cast<double>(state.encoder_counts - before->encoder_counts) /
-                       std::max(drivetrain_.encoder_counts_per_motor_turn, 1);
-  const double rest_v =
-      RestVoltage_v(state, 2.0 * std::numbers::pi * turns / period_s, drivetrain_, config_.resistance_ohm);
+  const double shaft_rad_s = ShaftSpeed_rad_s(drivetrain_, state.encoder_counts - before->encoder_counts, period_s);
+  const double rest_v = RestVoltage_v(state, shaft_rad_s, drivetrain_, config_.resistance_ohm);
   const double share = config_.filter_s > 0.0 ? 1.0 - std::exp(-period_s / config_.filter_s) : 1.0;
   rest_v_ = rest_v_ ? *rest_v_ + share * (rest_v - *rest_v_) : rest_v;
   Judge();

@@ -1,4 +1,5 @@
-// The angle of something that turns (pan unit, turntable) at any instant of the last second, from its readings.
+// The angle of something that turns (pan unit, turntable) at any instant of the last second, interpolated between its
+// readings.
 #pragma once
 
 #include <deque>
@@ -10,9 +11,10 @@ namespace merlin {
 
 class AngleTrack {
  public:
-  // In order of stamps; what is not finite or not newer is left out. Angles do not wrap.
+  // Readings in the order of their stamps. One that is not finite or not newer is left out. Angles do not wrap.
   void Add(const PanState& state);
-  // Between two readings on the straight line, beyond the oldest and newest kept that one's. Nothing before the first.
+  // Linear between two readings; before the oldest and after the newest reading, that reading's angle. Nothing while
+  // there is no reading.
   std::optional<double> At(Time time) const;
 
  private:

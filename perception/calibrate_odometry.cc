@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "perception/odometry.h"
+#include "robot/kinematics/ackermann.h"
+#include "robot/kinematics/motion.h"
 
 namespace merlin {
 namespace {
@@ -25,18 +26,17 @@ CarCalibration ValueOf(const CarDescription& described, const Unknowns& x) {
           .steering_offset_rad = x[2]};
 }
 
-// The straight line between the ends of the way, which an offset bends to an arc.
+// The straight line between the ends of the drive. The servo stands at zero; an offset bends the path to an arc.
 double Distance_m(const CarDescription& car, const StraightDrive& drive) {
-  const double offset_rad = car.steering_offset_rad;
-  const double path_m = static_cast<double>(drive.encoder_counts) * car.MetresPerCount() /
-                        WheelMeanRatio(car.wheelbase_m, car.track_m, offset_rad);
-  const double half_turn_rad = 0.5 * path_m * std::tan(offset_rad) / car.wheelbase_m;
-  return path_m * (std::abs(half_turn_rad) < 1e-6 ? 1.0 : std::sin(half_turn_rad) / half_turn_rad);
+  const double wheels_rad = WheelsAngle_rad(car, 0.0);
+  const double path_m = Path_m(car, drive.encoder_counts, wheels_rad);
+  const double half_turn_rad = Turn_rad(car, 0.5 * path_m, wheels_rad);
+  return path_m * ShapeOfArc(half_turn_rad).along;
 }
 
 double Diameter_m(const CarDescription& car, const CircleDrive& drive) {
   const double side = drive.steering_rad > 0.0 ? 1.0 : -1.0;
-  return side * 2.0 * car.wheelbase_m / std::tan(drive.steering_rad + car.steering_offset_rad);
+  return side * 2.0 / Curvature_1_m(car, WheelsAngle_rad(car, drive.steering_rad));
 }
 
 // Predicted less measured, each over its sigma.
@@ -77,7 +77,7 @@ std::string ProblemWith(const MeasuredDrives& drives) {
 }
 
 std::string Undetermined(const Unknowns& sigma) {
-  if (!(sigma[0] < kRadiusSigma)) return "the drives do not determine the wheel radius: drive a longer straight way";
+  if (!(sigma[0] < kRadiusSigma)) return "the drives do not determine the wheel radius: drive a longer straight line";
   if (!(sigma[1] < kWheelbaseSigma)) return "the drives do not determine the wheelbase: drive more and tighter circles";
   if (!(sigma[2] < kOffsetSigma_rad)) return "the drives do not determine the steering offset: drive more circles";
   return "";

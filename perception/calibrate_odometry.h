@@ -1,4 +1,5 @@
-// Wheel radius, wheelbase and steering offset from drives that an operator has measured with a tape.
+// Estimates wheel radius, wheelbase and steering offset from drives that an operator has measured with a tape: straight
+// ones, and circles to both sides. Weighted least squares, solved by Gauss-Newton.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +11,10 @@
 
 namespace merlin {
 
-// From a standing start to a stop, the servo at zero. Taped from mark to mark under the rear axle's middle; where the
-// steering has an offset the way between is a shallow arc.
+// From rest to rest, with the servo at zero. The distance is measured on the floor between the start and end points
+// below the rear axle's middle. With a steering offset the path between them is a shallow arc.
 struct StraightDrive {
-  std::int64_t encoder_counts = 0;  // [100, 1e12] in it, forwards
+  std::int64_t encoder_counts = 0;  // [100, 1e12] counted on it, forwards
   double distance_m = 0.0;          // [0.5, 1000]
 };
 
@@ -23,10 +24,11 @@ void Visit(Visitor& v, StraightDrive& c) {
   v("distance_m", c.distance_m, {0.5, 1000.0});
 }
 
-// At one steering angle. Approach it from either side in turn: so the play of the linkage averages out.
+// A circle at one steering angle. Approach the angle from both sides in turn, so that the play of the linkage averages
+// out.
 struct CircleDrive {
   double steering_rad = 0.0;  // [-1.2, 1.2] as the servo reports it, positive: left
-  double diameter_m = 0.0;    // [0.1, 1000] taped across the track of the rear axle's middle
+  double diameter_m = 0.0;    // [0.1, 1000] of the path of the rear axle's middle
 };
 
 template <class Visitor>
@@ -36,8 +38,8 @@ void Visit(Visitor& v, CircleDrive& c) {
 }
 
 struct MeasuredDrives {
-  double tape_sigma_m = 0.0015;        // [0.0001, 0.1] of one measured length
-  double steering_sigma_rad = 0.0015;  // [0.0001, 0.1] of the wheels' angle for a reported one: play
+  double tape_sigma_m = 0.0015;        // [0.0001, 0.1] one sigma of a measured length
+  double steering_sigma_rad = 0.0015;  // [0.0001, 0.1] one sigma of the wheels' angle at a reported angle: play
   std::vector<StraightDrive> straights;
   std::vector<CircleDrive> circles;
 };
@@ -51,15 +53,15 @@ void Visit(Visitor& v, MeasuredDrives& c) {
 }
 
 struct OdometryCalibration {
-  std::string problem;  // empty: solved; else one sentence, and nothing below holds
+  std::string problem;  // empty: solved; else one sentence, and nothing below is valid
   CarCalibration value;
-  CarCalibration sigma;     // one standard deviation of each, from the two sigmas above
-  double residual_rms = 0;  // in sigmas: about 1 or less where model, tape and sigmas agree
+  CarCalibration sigma;     // one standard deviation of each value
+  double residual_rms = 0;  // in sigmas; about 1 or less where model, measurements and sigmas agree
   int iterations = 0;
 };
 
-// Least squares over the drives (Gauss-Newton from the described values). Drives that leave a value open (one side only,
-// no straight one) or contradict each other are a problem, named.
+// Starts at the described values. Drives that do not determine a value (circles to one side only, no straight one) or
+// that contradict each other are reported as a problem.
 OdometryCalibration CalibrateOdometry(const CarDescription& described, const MeasuredDrives& drives);
 
 }  // namespace merlin

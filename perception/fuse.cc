@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kNearest_m = 0.05f;
 constexpr float kCellsPerPoint = 4.0f;  // the depth buffer's cells along the side of a point's square
-constexpr float kSide = 1.1f;           // of that square, a little more than the spacing: surfaces have no holes
+constexpr float kSide = 1.1f;           // of that square, in spacings: a little more than 1, so surfaces have no holes
 
 struct Projected {
   float u_px = 0.0f, v_px = 0.0f, depth_m = 0.0f;

@@ -8,13 +8,13 @@
 namespace merlin {
 namespace {
 
-// Dark pixels are usable, whatever the camera's own filter made of them: they are what asks for more light.
+// Dark pixels are usable, whatever the camera's own filter says of them: they show that more light is needed.
 bool IsUsable(std::uint8_t flags, float amplitude_e) {
   if (!std::isfinite(amplitude_e)) return false;
   return (flags & (kSaturated | kLowSignal)) != 0 || (flags & (kInvalid | kInconsistent)) == 0;
 }
 
-// A saturated pixel's amplitude says nothing, only that it is too high.
+// The amplitude of a saturated pixel is not known, only that it is too high: it counts as saturated_e.
 std::optional<double> MeanAmplitude_e(const DepthFrame& frame, double saturated_e) {
   double sum_e = 0.0;
   std::size_t count = 0;

@@ -1,4 +1,10 @@
-// What perception hands on: trusted points, motion and heading at one instant.
+// The result of perception for one depth frame: the points that can be trusted, wheel odometry and heading, all at the
+// frame's stamp.
+//
+//   frame  origin and axes
+//   base   the car at the stamp: on the ground below the rear axle's middle, x forward, y left, z up
+//   odom   where wheel odometry began; drifts
+//   world  the twin's and the compass's: yaw counts counter-clockwise from its x axis
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +19,7 @@
 namespace merlin {
 
 struct Point {
-  Eigen::Vector3f position{0, 0, 0};  // in the frame its container's name says
+  Eigen::Vector3f position{0, 0, 0};  // in the frame that its container's name ends with
   float sigma_m = 0.0f;               // one standard deviation along the ray
   std::array<std::uint8_t, 3> bgr{0, 0, 0};
   bool has_color = false;
@@ -23,14 +29,15 @@ struct Observation {
   Time stamp{0};  // of the depth frame
   std::vector<Point> points_base;
   Eigen::Vector3f camera_base{0, 0, 0};  // where the rays begin
-  double view_yaw_rad = 0.0;             // where the camera looks, from straight ahead, positive: to the left
-  // The pixels without a point: ends of rays too dark to measure, before which nothing but the darkest stands; unit
-  // directions of saturated ones (something close, range unknown), and of all others.
+  double view_yaw_rad = 0.0;             // direction of the camera, from straight ahead; positive: to the left
+  // Pixels without a point. free_base: ends of rays that were too dark to measure; up to there is free space, or
+  // something very dark. saturated_base: unit directions in which something is close, at an unknown range.
+  // unknown_base: unit directions of all others.
   std::vector<Eigen::Vector3f> free_base, saturated_base, unknown_base;
   std::array<int, static_cast<std::size_t>(Rejection::kCount)> rejections{};
   Pose T_odom_base = Pose::Identity();  // wheel odometry since the start
-  double yaw_rad = 0.0;                 // compass and wheels together, from the world's x axis
-  double yaw_sigma_rad = 0.0;           // infinite: no compass reading yet
+  double yaw_rad = 0.0;                 // heading by compass and wheels, in the world
+  double yaw_sigma_rad = 0.0;           // one standard deviation of it; infinite before the first compass reading
 };
 
 }  // namespace merlin

@@ -22,15 +22,15 @@ void Pipeline::Add(const CompassReading& reading) {
     heading_.Update(reading.stamp, reading.yaw_rad, Yaw(*T_odom_base));
 }
 
-void Pipeline::Add(ColorFrame frame) { color_ = std::move(frame); }
+void Pipeline::Add(std::shared_ptr<const ColorFrame> frame) { color_ = std::move(frame); }
 
 std::optional<Pose> Pipeline::OdomAt(Time time) const {
   const auto T_odom_base = odometry_.At(time);
-  if (!T_odom_base || !rig_.on_stand) return T_odom_base;
-  const auto angle_rad = stand_.At(time);
+  if (!T_odom_base || !rig_.on_turntable) return T_odom_base;
+  const auto angle_rad = turntable_.At(time);
   if (!angle_rad) return std::nullopt;
-  const Pose T_base_stand = rig_.car.T_base_stand();
-  return *T_odom_base * T_base_stand * FromXyYaw(0.0, 0.0, *angle_rad) * T_base_stand.inverse();
+  const Pose T_base_turntable = rig_.car.T_base_turntable();
+  return *T_odom_base * T_base_turntable * FromXyYaw(0.0, 0.0, *angle_rad) * T_base_turntable.inverse();
 }
 
 std::optional<Pose> Pipeline::CameraAt(const Pose& T_base_camera, Time time) const {

@@ -34,8 +34,8 @@ std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera) {
 
 namespace {
 
-// A driver that puts the range of a dark pixel to 0 calls it invalid too. One that clipped, or moved, is dark as well: what
-// is left of its phase is no measure of the light.
+// Some drivers flag a dark pixel as invalid too. The amplitude of a saturated or inconsistent pixel is no measure of
+// the light, so such a pixel is not called dark.
 bool IsDark(const FilteredDepth& depth, std::size_t i) {
   const std::uint8_t flags = depth.frame.flags[i];
   return (depth.reasons[i] == Rejection::kGhost || (flags & kLowSignal) != 0) &&

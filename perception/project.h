@@ -1,4 +1,5 @@
-// From range image to points with their uncertainty.
+// Turns a range image into points of the base frame with their uncertainty, and keeps what the pixels without a point
+// say: free space, something too close, or nothing.
 #pragma once
 
 #include <vector>
@@ -10,8 +11,9 @@
 
 namespace merlin {
 
-// One sigma of a range [m] from the pixel's amplitude: small-error law of the two-tap, four-phase estimator,
-// c / (4 sqrt2 pi f) sqrt(N_s + 2 sigma_r^2) / (C N_s) with C N_s = amplitude (R. Lange, thesis, Siegen 2000).
+// One standard deviation of a range [m], from the pixel's amplitude: the small-error law of the two-tap, four-phase
+// estimator, c / (4 sqrt2 pi f) sqrt(N_s + 2 sigma_r^2) / (C N_s) with C N_s = amplitude (R. Lange, "3D time-of-flight
+// distance measurement with custom solid-state image sensors", thesis, University of Siegen, 2000).
 class RangeSigma {
  public:
   RangeSigma(const DepthCameraSheet& sheet, const DepthSettings& settings);
@@ -21,11 +23,11 @@ class RangeSigma {
   double scale_m_, contrast_, noise_e2_;
 };
 
-// Unit rays of all pixels in the optical frame, row-major.
+// Unit rays of all pixels in the optical frame, row by row.
 std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera);
 
-// How far [m] a pixel of so little amplitude is free at least: anything of albedo times cos(incidence) >= 0.02 (black
-// plastic's at 60 deg) that stood nearer would have returned more. At most the unambiguous range.
+// The range [m] up to which a dark pixel shows free space: anything nearer with albedo times cos(incidence) >= 0.02
+// (black plastic at 60 deg) would have returned more light. At most the unambiguous range.
 class FreeRange {
  public:
   FreeRange(const DepthCameraSheet& sheet, const DepthSettings& settings);
@@ -35,8 +37,8 @@ class FreeRange {
   double darkest_e_m2_, least_e_, farthest_m_;
 };
 
-// Accepted pixels as points in the base frame; those too dark, or dark enough to be ghosts, as the way that is free before
-// them; all others as directions.
+// Fills the observation's points and rays: an accepted pixel becomes a point; one that is too dark, or a ghost, the end
+// of its free range; all others directions.
 void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, const std::vector<Eigen::Vector3f>& rays,
                   const Pose& T_base_camera, Observation& observation);
 

@@ -1,4 +1,6 @@
-// Decides which depth pixels to believe. Every rejected pixel keeps its reason.
+// Decides which depth pixels can be trusted. First it takes the camera's flags, then it looks for ghosts (pixels whose
+// true range is beyond the unambiguous range), then for pixels that their neighbours contradict. Accepted ranges are
+// smoothed by a median. Every rejected pixel keeps its reason.
 #pragma once
 
 #include <array>
@@ -13,7 +15,7 @@ namespace merlin {
 enum class Rejection : std::uint8_t {
   kNone,
   kInvalid,       // the camera saw no return
-  kSaturated,     // a tap clipped: something is there, nearer than the range says
+  kSaturated,     // a tap clipped: something is closer than the range says
   kInconsistent,  // the phase images disagree
   kLowSignal,     // too dark to measure
   kGhost,         // too dark for its range: a surface one unambiguous range farther away
@@ -22,11 +24,13 @@ enum class Rejection : std::uint8_t {
 };
 
 struct DepthFilterConfig {
-  double ghost_albedo = 0.9;  // [0, 1] brightest diffuse surface expected; higher rejects more. Below it a ghost passes
+  // [0, 1] albedo of the brightest diffuse surface expected. A higher value rejects more; ghosts of brighter surfaces
+  // pass.
+  double ghost_albedo = 0.9;
   double agreement_share =
-      0.12;  // [0, 1] neighbours within this share of the range agree; guess: a wall seen at 11 deg
-  double agreement_floor_m = 0.05;  // [0, 1] and always within this
-  int neighbours_min = 3;           // [0, 8] of 8 that must agree; guess
+      0.12;  // [0, 1] neighbours agree within this share of the range: a wall seen at 11 deg; guess
+  double agreement_floor_m = 0.05;  // [0, 1] and always within this; guess
+  int neighbours_min = 3;           // [0, 8] of the 8 neighbours must agree; guess
 };
 
 template <class Visitor>
@@ -39,16 +43,16 @@ void Visit(Visitor& v, DepthFilterConfig& c) {
 
 struct FilteredDepth {
   DepthFrame frame;                // ranges of accepted pixels: median of the agreeing 3x3 neighbourhood
-  std::vector<Rejection> reasons;  // one a pixel
+  std::vector<Rejection> reasons;  // one per pixel
   std::array<int, static_cast<std::size_t>(Rejection::kCount)> counts{};
 };
 
-// True if a pixel is darker than any surface at its range should be, so that it must lie an unambiguous range U farther:
-// its implied albedo amplitude r^2 / lamp is below ghost_albedo (r / (r + U))^2. Departure from a physical test of the
-// incidence angle, which one pixel does not know: very oblique dark surfaces are rejected too.
+// True for a pixel that is darker than a surface at its range r should be, so that it may lie one unambiguous range U
+// farther: its implied albedo, amplitude r^2 / lamp, is below ghost_albedo (r / (r + U))^2. One pixel does not know its
+// angle of incidence, so very oblique dark surfaces are rejected too.
 bool IsGhost(double range_m, double amplitude_e, double lamp_amplitude_e_m2, double unambiguous_m, double ghost_albedo);
 
-// Camera flags, ghosts, then agreement with neighbours and the median (thesis eq. 4.6-4.8: amplitude, then median).
+// All steps in this order. The thesis (perception/pipeline.h) has amplitude, then median: eq. 4.6-4.8.
 FilteredDepth FilterDepth(DepthFrame frame, const DepthCameraSheet& sheet, const DepthFilterConfig& config);
 
 }  // namespace merlin

@@ -1,4 +1,4 @@
-// The faults of one file, gathered so that a user sees them all at once: a line each, up to a dozen.
+// The faults of one file, gathered so that a user sees them all at once: a line each.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,9 @@ namespace merlin {
 
 class FaultList {
  public:
-  // name: the file's, for the line that counts what is not shown; empty where the faults name it.
-  explicit FaultList(std::string name = {}) : name_(std::move(name)) {}
+  // name: the file's, for the line that counts what is not shown; empty where the faults name it. shown: the most
+  // lines.
+  explicit FaultList(std::string name = {}, std::size_t shown = 12) : name_(std::move(name)), shown_(shown) {}
 
   // Runs a step of reading, and notes the InputError that it throws. Returns whether there was none.
   template <class Step>
@@ -27,13 +28,13 @@ class FaultList {
 
   void Add(const InputError& fault) { Add(std::string(fault.what())); }
   void Add(const std::string& fault) {
-    constexpr std::size_t kShown = 12;
-    if (++count_ <= kShown) text_ += (text_.empty() ? "" : "\n") + fault;
-    if (count_ > kShown)
-      more_ = "\n" + name_ + (name_.empty() ? "and " : ": and ") + std::to_string(count_ - kShown) + " more";
+    if (++count_ <= shown_) text_ += (text_.empty() ? "" : "\n") + fault;
+    if (count_ > shown_)
+      more_ = "\n" + name_ + (name_.empty() ? "and " : ": and ") + std::to_string(count_ - shown_) + " more";
   }
 
   bool empty() const { return count_ == 0; }
+  std::size_t count() const { return count_; }
 
   // Throws one InputError with every fault, if there is any.
   void ThrowIfAny() const {
@@ -42,6 +43,7 @@ class FaultList {
 
  private:
   std::string name_, text_, more_;
+  std::size_t shown_;
   std::size_t count_ = 0;
 };
 

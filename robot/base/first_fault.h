@@ -1,5 +1,5 @@
-// Does one thing after the other, whatever fails, and keeps the first failure: for the end of a run, where the car must
-// stand and as many files as possible must be written.
+// Runs one action after the other, whatever fails, and keeps the first failure. For the end of a run, where the car
+// must be stopped and as many files as possible must be written.
 #pragma once
 
 #include <exception>

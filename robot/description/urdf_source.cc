@@ -5,12 +5,11 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string_view>
 
 #include "robot/base/error.h"
+#include "robot/base/files.h"
 #include "robot/description/urdf_schema.h"
 
 namespace merlin {
@@ -59,9 +58,7 @@ int UrdfSource::Line(const std::string& name) const {
 UrdfSource ReadUrdf(const std::filesystem::path& path) {
   UrdfSource source;
   source.path = path;
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) throw InputError(path.string(), "cannot be read", "a URDF file");
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string text = ReadFile(path, "a URDF file");
   source.document.Parse(text.c_str());
   const TiXmlElement* robot = source.document.RootElement();
   if (source.document.Error())

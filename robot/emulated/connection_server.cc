@@ -34,12 +34,14 @@ void ConnectionServer::Accept() {
       continue;
     }
     Connection& connection = connections_.emplace_back(socket);
+    ++serving_;
     connection.thread = std::thread([this, &connection] {
       try {
         serve_(connection.socket);
       } catch (...) {  // of one connection: it ends, and the other end notices
       }
       ::shutdown(connection.socket, SHUT_RDWR);  // the other end learns it now; Forget frees the number
+      --serving_;
       connection.over = true;
     });
   }

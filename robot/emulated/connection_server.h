@@ -17,6 +17,9 @@ class ConnectionServer {
   ConnectionServer(const ConnectionServer&) = delete;
   ConnectionServer& operator=(const ConnectionServer&) = delete;
 
+  // How many are served now.
+  int connections() const { return serving_; }
+
  private:
   struct Connection {
     explicit Connection(int accepted) : socket(accepted) {}
@@ -30,6 +33,7 @@ class ConnectionServer {
   int listening_;
   std::function<void(int)> serve_;
   std::list<Connection> connections_;  // the accepting thread's
+  std::atomic<int> serving_ = 0;
   std::atomic<bool> stop_ = false;
   std::thread thread_;
 };

@@ -26,6 +26,9 @@ class DepthServer {
   // From any thread. A client that waits for its next frame gets this one; it sees none from before it asked first.
   void Publish(const DepthFrame& frame);
 
+  // How many have the camera open.
+  int clients() const { return server_.connections(); }
+
  private:
   void Serve(int socket);
   WireMessage Hello();

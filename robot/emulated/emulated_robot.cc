@@ -70,6 +70,11 @@ std::optional<std::string> EmulatedRobot::color_url() const {
   return color_->url();
 }
 
+void EmulatedRobot::FreePorts() {
+  drive_terminal_.Unclaim();
+  if (compass_terminal_) compass_terminal_->Unclaim();
+}
+
 void EmulatedRobot::Start() {
   if (!thread_.joinable()) thread_ = std::thread([this] { Run(); });
 }

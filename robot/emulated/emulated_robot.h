@@ -45,6 +45,12 @@ class EmulatedRobot {
   const std::string& depth_socket() const { return depth_socket_; }
   std::optional<std::string> color_url() const;
 
+  // Whether a program has the ToF camera open: every program that drives does, and the system closes it even for one that
+  // is killed.
+  bool HasDriver() const { return depth_.clients() > 0; }
+  // After a program has gone: the next one may open the serial ports.
+  void FreePorts();
+
   // Calls use(twin) while the world stands still.
   template <class Use>
   auto With(const Use& use) {

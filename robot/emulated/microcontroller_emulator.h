@@ -17,7 +17,7 @@ namespace merlin {
 // What the microcontroller is wired to. No pan unit: leave its two empty.
 struct EmulatedCar {
   std::function<void(const DriveCommand&)> send;  // as Drive::Send: expires by itself
-  std::function<DriveState()> read;               // as it stands now
+  std::function<DriveState()> read;               // the state now
   std::function<void(double angle_rad)> pan{};
   std::function<double()> pan_angle_rad{};
 };
@@ -41,7 +41,7 @@ class MicrocontrollerEmulator : public SerialEnd {
   MicrocontrollerEmulator(const MicrocontrollerEmulatorConfig& config, EmulatedCar car, Time start);
 
   void Receive(Time now, BytesView bytes) override;
-  Bytes Send(Time now) override;  // also looks after the watchdog
+  Bytes Send(Time now) override;  // runs the watchdog, too
   Time next() const override { return next_state_; }
 
   const LinkCounters& counters() const { return decoder_.counters(); }

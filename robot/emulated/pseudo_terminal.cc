@@ -1,6 +1,7 @@
 #include "robot/emulated/pseudo_terminal.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -60,6 +61,10 @@ void PseudoTerminal::Close() {
   if (slave_ >= 0) close(slave_);
   close(master_);
   master_ = slave_ = -1;
+}
+
+void PseudoTerminal::Unclaim() {
+  if (slave_ >= 0) ioctl(slave_, TIOCNXCL);
 }
 
 Bytes PseudoTerminal::Read() {

@@ -20,6 +20,9 @@ class PseudoTerminal {
 
   void Open();
   void Close();
+  // The program that had claimed the port for itself (TIOCEXCL) has died: others may open it again. The kernel undoes the
+  // claim only when nobody has the port open, and this end always has.
+  void Unclaim();
 
   // What the program is to open.
   const std::filesystem::path& path() const { return link_.empty() ? port_ : link_; }

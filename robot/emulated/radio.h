@@ -1,6 +1,6 @@
 // A pair of radio modems WIZ-434-SML-IA in place of the cable: 433.92 MHz, half duplex, 100 kbit/s on air. What comes
 // in is cut into packets: a packet ends after 1.5 byte times of silence, at least 0.5 ms, or when it has 96 bytes. Then
-// the modem turns round to sending (5 ms), sends the packet with 6 bytes of its own, and the other one hands it out at
+// the modem switches to sending (5 ms), sends the packet with 6 bytes of its own, and the other one hands it out at
 // its baud rate: n bytes take 10 n / baud + silence + 5 ms + 8 (n + 6) / 100 kbit/s + 10 n / baud. Bytes that arrive
 // between the packet's end and the end of its sending are lost. Only one can send: the other's packet waits for the air
 // (guess).

@@ -1,4 +1,4 @@
-// A serial cable: both ways at once, each byte 10 bit times, one behind the other.
+// A serial cable: full duplex; each byte takes 10 bit times, one after the other.
 #pragma once
 
 #include <array>

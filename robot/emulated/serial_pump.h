@@ -1,5 +1,5 @@
 // Joins an emulated device to the program at the other end of a pseudo-terminal, through a line with its timing (a
-// cable or the radio). Without a thread: whoever has the time calls Step, a thousand times a second or so.
+// cable or the radio). It has no thread: its owner calls Step, about a thousand times a second.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,8 @@ namespace merlin {
 
 class SerialPump {
  public:
-  // device and terminal outlive this. A program that sets another baud rate than the device's hears and says nonsense.
+  // device and terminal outlive this. A program that sets another baud rate than the device's receives and sends
+  // garbage.
   SerialPump(PseudoTerminal& terminal, std::unique_ptr<Channel> channel, SerialEnd& device, int baud);
 
   void Step(Time now);

@@ -1,4 +1,4 @@
-// Time as the stack sees it: steps the world in the twin, jumps in replay, sleeps on the car.
+// Time as the stack sees it. Waiting steps the world in the twin, jumps ahead in replay, and sleeps on the car.
 #pragma once
 
 #include "robot/types/time.h"

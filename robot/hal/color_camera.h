@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "robot/types/device_status.h"
 #include "robot/types/color_camera.h"
+#include "robot/types/device_status.h"
 #include "robot/types/se3.h"
 
 namespace merlin {

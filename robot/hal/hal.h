@@ -2,6 +2,8 @@
 // of these; the stack never meets anything else. No call blocks but Clock::WaitUntil; threads belong to the plugs.
 #pragma once
 
+#include <vector>
+
 #include "robot/hal/clock.h"
 #include "robot/hal/color_camera.h"
 #include "robot/hal/compass.h"
@@ -11,15 +13,18 @@
 
 namespace merlin {
 
-// A device the robot lacks is a null pointer. The plug that made them owns them and outlives this struct.
+// A device the robot lacks is a null pointer. The plug that made them owns them and outlives this struct. The stack drives
+// by one camera of each kind; what a robot carries beyond these two is listed apart.
 struct Robot {
   Clock* clock = nullptr;  // never null
   DepthCamera* depth = nullptr;
   ColorCamera* color = nullptr;
   Compass* compass = nullptr;
   Drive* drive = nullptr;
-  PanUnit* pan = nullptr;    // turns the cameras
-  PanUnit* stand = nullptr;  // turns the car that stands on it
+  PanUnit* pan = nullptr;        // turns the cameras
+  PanUnit* turntable = nullptr;  // turns the car that stands on it
+  std::vector<DepthCamera*> more_depth{};
+  std::vector<ColorCamera*> more_color{};
 };
 
 }  // namespace merlin

@@ -1,5 +1,5 @@
 // Something that turns about the vertical: the servo under the cameras (0 to 180 deg at its horn, 90 ahead: here -pi/2
-// to pi/2, 0 ahead), or a stand that turns the whole car, without end. Optional: MERLIN's cameras are fixed.
+// to pi/2, 0 ahead), or a turntable that turns the whole car, without end. Optional: MERLIN's cameras are fixed.
 #pragma once
 
 #include <optional>

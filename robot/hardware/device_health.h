@@ -1,5 +1,5 @@
-// How a device behind a port is, judged by what came when: absent without a port, ok as long as good messages come,
-// faulty while only unreadable ones do, else silent (also before the first).
+// The health of a device behind a port, judged by its messages. Without a port it is absent; while good messages come,
+// ok; while only unreadable ones come, faulty; else (before the first message, too) silent.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ class DeviceHealth {
   void Connected(Time now);
   void Disconnected(Time now);
   void Heard(Time now);                                   // a good message
-  void GarbageSoFar(Time now, std::uint64_t garbage);     // the device's count of it
-  void Judge(Time now);                                   // call it again and again
-  const DeviceStatus& status() const { return status_; }  // delivered and missed are not its affair
+  void GarbageSoFar(Time now, std::uint64_t garbage);     // how much has come in all
+  void Judge(Time now);                                   // call regularly
+  const DeviceStatus& status() const { return status_; }  // without delivered and missed: those are the queue's
 
  private:
   void Set(DeviceStatus::Health health, Time now);

@@ -115,12 +115,12 @@ std::vector<DeviceReport> CheckDevices(const HardwareConfig& config, const Hardw
       return Complaint("compass", compass.Status(), compass.Complaint());
     });
   check("depth camera", [&]() -> std::string {
-    TofCamera camera(config.depth, cameras.depth, cameras.depth_settings, clock);
+    TofCameraDriver camera(config.depth, cameras.depth, cameras.depth_settings, clock);
     return WaitFor(clock, listen, [&] { return camera.Poll().has_value(); }) ? "" : "depth camera: no frame came";
   });
   if (config.color && cameras.color)
     check("colour camera", [&]() -> std::string {
-      ColorCapture camera(*config.color, *cameras.color, cameras.color_settings, clock);
+      ColorCameraDriver camera(*config.color, *cameras.color, cameras.color_settings, clock);
       return WaitFor(clock, listen, [&] { return camera.Poll().has_value(); }) ? "" : "colour camera: no picture came";
     });
   return reports;

@@ -1,4 +1,4 @@
-// The real car as the stack sees it: its drivers together, each from its own config.
+// The real car: all its drivers, each made from its own config.
 #pragma once
 
 #include <memory>
@@ -7,25 +7,27 @@
 #include <vector>
 
 #include "robot/hal/hal.h"
-#include "robot/hardware/color/color_capture.h"
+#include "robot/hardware/color/color_camera_driver.h"
 #include "robot/hardware/compass/compass_3dm_driver.h"
-#include "robot/hardware/depth/tof_camera.h"
+#include "robot/hardware/depth/tof_camera_driver.h"
 #include "robot/hardware/drive/microcontroller_drive.h"
 #include "robot/hardware/real_clock.h"
 
 namespace merlin {
 
-// Which device is where: the file that `--robot hardware:FILE` names.
+// Where each device is: the contents of the file that `--robot hardware:FILE` names.
 struct HardwareConfig {
+  std::string car;  // the car that these devices belong to, by the name in its description; empty: any
   RealClockConfig clock;
   MicrocontrollerConfig drive;
-  std::optional<Compass3dmConfig> compass;  // not listed: the car has none
+  std::optional<Compass3dmConfig> compass;  // absent: the car has none
   TofCameraConfig depth;
-  std::optional<ColorCaptureConfig> color;
+  std::optional<ColorCameraConfig> color;
 };
 
 template <class Visitor>
 void Visit(Visitor& v, HardwareConfig& c) {
+  v("car", c.car);
   v("clock", c.clock);
   v("drive", c.drive);
   v("compass", c.compass);
@@ -33,7 +35,7 @@ void Visit(Visitor& v, HardwareConfig& c) {
   v("color", c.color);
 }
 
-// What the cameras are, and how they begin.
+// The cameras and their first settings.
 struct HardwareCameras {
   DepthCameraInfo depth;
   DepthSettings depth_settings;
@@ -58,8 +60,8 @@ class HardwareRobot {
   RealClock& clock_;
   MicrocontrollerDrive drive_;
   std::optional<Compass3dmDriver> compass_;
-  std::optional<TofCamera> depth_;
-  std::optional<ColorCapture> color_;
+  std::optional<TofCameraDriver> depth_;
+  std::optional<ColorCameraDriver> color_;
 };
 
 // One device: opened, listened to, closed again.

@@ -1,30 +1,28 @@
-// Where a driver's thread leaves measurements and the stack takes them; neither waits for the other. Knows the status.
+// Where a driver's thread leaves measurements and the stack takes them; neither waits for the other. It also knows how
+// the device is.
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <mutex>
 #include <optional>
 #include <utility>
 
-#include "robot/types/device_status.h"
-#include "robot/types/time.h"
+#include "robot/hal/measurement_queue.h"
 
 namespace merlin {
 
 template <class Measurement>
 class Mailbox {
  public:
-  // Of what waits it keeps the newest `places`. Silent: ok until nothing has come for so long.
+  // Keeps the newest `places` measurements. The device counts as silent when nothing has come for silent_after.
   Mailbox(std::size_t places, Duration silent_after, Time now)
-      : places_(places), silent_after_(silent_after), heard_(now) {
+      : waiting_(places), silent_after_(silent_after), heard_(now) {
     status_.since = now;
   }
 
   void Put(Measurement measurement, Time now) {
     const std::lock_guard lock(mutex_);
-    waiting_.push_back(std::move(measurement));
-    if (waiting_.size() > places_) waiting_.pop_front(), ++status_.missed;
+    waiting_.Put(std::move(measurement));
     Change(DeviceStatus::Health::kOk, now);
     heard_ = now;
   }
@@ -39,15 +37,11 @@ class Mailbox {
   }
   std::optional<Measurement> Take() {
     const std::lock_guard lock(mutex_);
-    if (waiting_.empty()) return std::nullopt;
-    std::optional<Measurement> oldest = std::move(waiting_.front());
-    waiting_.pop_front();
-    ++status_.delivered;
-    return oldest;
+    return waiting_.Take();
   }
   DeviceStatus Status(Time now) const {
     const std::lock_guard lock(mutex_);
-    DeviceStatus status = status_;
+    DeviceStatus status = waiting_.Counted(status_);
     if (status.health == DeviceStatus::Health::kOk && now - heard_ > silent_after_)
       status.health = DeviceStatus::Health::kSilent, status.since = heard_ + silent_after_;
     return status;
@@ -62,10 +56,9 @@ class Mailbox {
   }
 
   mutable std::mutex mutex_;
-  std::size_t places_;
+  MeasurementQueue<Measurement> waiting_;
   Duration silent_after_;
   Time heard_;
-  std::deque<Measurement> waiting_;
   DeviceStatus status_;
 };
 

@@ -1,5 +1,5 @@
-// Time on the car: the machine's steady clock since the run's start. A watchdog, on a thread of its own, stops the car
-// when the stack no longer comes back to wait for its next tick.
+// Time on the car: the machine's steady clock, counted from the start of the run. A watchdog on its own thread stops
+// the car when the stack stops waiting for its next tick.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Bytes as they lie on a wire: numbers big-endian, as the 3DM sends them.
+// Bytes as they are on the wire: numbers are big-endian, as the 3DM sends them.
 #pragma once
 
 #include <cassert>

@@ -52,8 +52,8 @@ void Visit(Visitor& v, PollerConfig& c) {
   v("patience_s", c.patience_s, Range{0.0, 1.0});
 }
 
-// The host's side: says what to send and when. The reply has no frame that would set it off from garbage; but it is the
-// answer to a question: only exactly what comes between question and reading counts, and each poll starts afresh.
+// The host's side: decides what to send and when. The reply has no frame that separates it from garbage. But it answers
+// a question: only what arrives between the question and the reading counts, and each poll starts afresh.
 class Poller {
  public:
   struct Reading {

@@ -20,8 +20,8 @@ struct Frame {
   Bytes payload{};            // at most kPayloadMax_bytes
 };
 
-// Types with this bit free of the direction bit 0x80 greet: they are read whatever version their sender speaks, so that
-// two sides of different versions can tell each other so.
+// Types with this value, the direction bit 0x80 apart, are greetings. They are read whatever the sender's version, so
+// that two sides of different versions can report it to each other.
 inline constexpr std::uint8_t kGreetingType = 0x01;
 
 Bytes EncodeFrame(const Frame& frame);

@@ -1,6 +1,6 @@
-// How late a message is, from its sender's own clock, without a common one. Whatever the two clocks show, the message
-// that took least time on its way sets the mark; any later one is late by what it exceeds the mark. (The idea of NTP's
-// clock filter: Mills, RFC 5905, section 10.)
+// How late a message is, without a clock that sender and receiver share. The message with the shortest delay so far is
+// the reference; a later message is late by as much as its delay exceeds that. (The idea of NTP's clock filter: Mills,
+// RFC 5905, section 10.)
 #pragma once
 
 #include <cstdint>

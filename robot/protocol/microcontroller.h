@@ -1,9 +1,9 @@
-// What PC and microcontroller say to each other, in the frames of robot/protocol/frame.h. Ours: of the real protocol no
-// more is known than in robot/protocol/one_byte.h. Wire units: ms, um/s, 1e-4 rad, mA, mV, counts.
+// The messages between PC and microcontroller, in the frames of robot/protocol/frame.h. The protocol is ours: of the
+// real one no more is known than robot/protocol/one_byte.h has. Wire units: ms, um/s, 1e-4 rad, mA, mV, counts.
 //
-// A command holds for valid_for from the moment it was sent, by the sender's clock: the microcontroller takes off what
-// the command was late (LeastDelay), so that neither a slow radio nor a duplicate prolongs it. A Hello makes it forget
-// the old sender's clock. Without any command for 150 ms it brakes, whatever holds.
+// A command is valid for valid_for from the moment it was sent, by the sender's clock. The microcontroller subtracts
+// the command's delay (LeastDelay), so that neither a slow radio nor a duplicate prolongs it. A Hello makes it forget
+// the old sender's clock. When no command has come for 150 ms, it brakes, whatever is valid.
 #pragma once
 
 #include <cstdint>

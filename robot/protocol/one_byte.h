@@ -1,8 +1,10 @@
 // A drive command in one byte. The thesis says of MERLIN's own protocol no more than that 8 bits of data command the
 // movement; this is our reading of it, for a microcontroller that takes nothing else: the high half is the speed, the
 // low half the steering, each a two's complement number of -7 to 7 sevenths of the car's limit. Forwards and left are
-// positive. -8 is not a number of this code and reads as a stop, as does 0x00. How long it holds is the receiver's
-// affair: its watchdog brakes when no byte comes.
+// positive. -8 is not a number of this code and reads as a stop, as does 0x00. The receiver
+// decides how long it is valid: its watchdog brakes when no byte comes.
+// The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
+// University of Siegen, about 2011.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,8 @@
-// What the operator's station says to the car over the radio: the command in one byte (robot/protocol/one_byte.h) and
-// his switches, in a frame of robot/protocol/frame.h. Ours: the thesis says of the station no more than that a joystick
-// drives the car by radio.
+// The message of the operator's station to the car over the radio: the manual command in one byte
+// (robot/protocol/one_byte.h) and the switches, in a frame of robot/protocol/frame.h. The message is ours: the thesis
+// (robot/protocol/one_byte.h) says of the station only that a joystick drives the car by radio.
+// The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
+// University of Siegen, about 2011.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +14,9 @@ namespace merlin::operator_link {
 
 struct Message {
   std::uint8_t command = 0;    // one byte: speed and steering
-  bool held = false;           // the hand is on the stick
-  bool override_stop = false;  // drive on, whatever is in the way
-  bool autonomy = false;       // the pilot may drive while the hand is off
+  bool held = false;           // the operator holds the stick
+  bool override_stop = false;  // drive on, even towards an obstacle
+  bool autonomy = false;       // the pilot may drive while the operator does not hold it
   bool operator==(const Message&) const = default;
 };
 

@@ -1,6 +1,6 @@
-// One end of a serial line as a state machine: times and bytes in, bytes out. It knows no port and no clock, so that
-// host and device, joined by whatever line, can be run through an hour of faults in no time. The one interface beside
-// the HAL: the same thread serves every driver, the same pump every emulated device.
+// One end of a serial line as a state machine: times and bytes in, bytes out. It knows no port and no clock, so that a
+// test can run host and device through an hour of faults in a moment. It is the one interface beside the HAL: the same
+// thread serves every driver, and the same pump every emulated device.
 #pragma once
 
 #include "robot/protocol/bytes.h"

@@ -1,14 +1,12 @@
-// Measurements on their way: in order of stamps, each handed out once, when its latency is over.
+// Measurements of the twin on their way to the stack: each may be taken when its latency is over, and is waited for
+// then if a worker has not finished it yet.
 #pragma once
 
-#include <cstddef>
-#include <deque>
 #include <future>
 #include <optional>
 #include <utility>
 
-#include "robot/types/device_status.h"
-#include "robot/types/time.h"
+#include "robot/hal/measurement_queue.h"
 
 namespace merlin {
 
@@ -17,14 +15,9 @@ class Outbox {
  public:
   explicit Outbox(Duration latency) : latency_(latency) {}
 
-  // out: when it may be taken, where that is not its stamp plus the latency.
-  void Put(Time stamp, Time out, std::future<Measurement> measurement) {
-    waiting_.push_back({out, std::move(measurement)});
-    // Of those that could have been taken a slow reader keeps the newest few; what is on its way is not his fault.
-    while (waiting_.size() > kCapacity && waiting_[kCapacity].out <= stamp) {
-      waiting_.pop_front();
-      ++status_.missed;
-    }
+  // Called at its stamp. ready: when it may be taken, where that is not its stamp plus the latency.
+  void Put(Time stamp, Time ready, std::future<Measurement> measurement) {
+    queue_.Put(std::move(measurement), ready, stamp);
   }
   void Put(Time stamp, std::future<Measurement> measurement) { Put(stamp, stamp + latency_, std::move(measurement)); }
   void Put(Time stamp, Measurement measurement) {
@@ -33,23 +26,15 @@ class Outbox {
     Put(stamp, promise.get_future());
   }
   std::optional<Measurement> Take(Time now) {
-    if (waiting_.empty() || waiting_.front().out > now) return std::nullopt;
-    Measurement measurement = waiting_.front().measurement.get();
-    waiting_.pop_front();
-    ++status_.delivered;
-    return measurement;
+    std::optional<std::future<Measurement>> oldest = queue_.Take(now);
+    if (!oldest) return std::nullopt;
+    return oldest->get();
   }
-  const DeviceStatus& status() const { return status_; }
+  DeviceStatus status() const { return queue_.Counted({}); }
 
  private:
-  static constexpr std::size_t kCapacity = 16;
-  struct Waiting {
-    Time out;
-    std::future<Measurement> measurement;
-  };
   Duration latency_;
-  std::deque<Waiting> waiting_;
-  DeviceStatus status_;
+  MeasurementQueue<std::future<Measurement>> queue_;
 };
 
 }  // namespace merlin

@@ -52,7 +52,7 @@ class TwinDepth final : public DepthCamera {
   void Sample(const sim::World& world) {
     now_ = world.Now();
     if (!schedule_.Due(now_)) return;
-    auto bodies = sim::MotionsOf(world.model(), world.data());
+    auto bodies = world.Motions();
     const sim::BodyMotion camera = world.CameraMotion(info_.T_base_camera);
     // Nothing leaves before its last sub-frame is over.
     const Time out = now_ + FromSeconds(std::max(info_.sheet.latency_s, 0.5 * info_.sheet.ExposureSpan_s(settings_)));
@@ -111,7 +111,7 @@ class TwinColor final : public ColorCamera {
   void Sample(const sim::World& world) {
     now_ = world.Now();
     if (!schedule_.Due(now_)) return;
-    auto shot = camera_->Take(world.model(), world.data(), world.CameraMotion(info_.T_base_camera));
+    auto shot = camera_->Take(world.model(), world.data(), world.CameraMotion(info_.T_base_camera), world.Motions());
     outbox_.Put(now_, worker_.Do([this, shot, settings = settings_, stamp = now_, index = index_++] {
       return camera_->Expose(*shot, settings, stamp, index);
     }));
@@ -176,7 +176,7 @@ class TwinDrive final : public Drive {
   Outbox<DriveState> outbox_{Duration(0)};
 };
 
-// The pan unit, or the stand.
+// The pan unit, or the turntable.
 class TwinTurn final : public PanUnit {
  public:
   TwinTurn(const sim::World& world, double rate_hz, std::function<void(double)> send, std::function<double()> read)
@@ -225,10 +225,10 @@ struct Twin::Impl final : public Clock {
       pan.emplace(
           world, options.drive_rate_hz, [this](double angle_rad) { world.pan()->Send(angle_rad); },
           [this] { return world.pan()->Read_rad(world.data()); });
-    if (world.stand() != nullptr)
-      stand.emplace(
-          world, options.drive_rate_hz, [this](double angle_rad) { world.stand()->Send(angle_rad); },
-          [this] { return world.stand()->angle_rad(); });
+    if (world.turntable() != nullptr)
+      turntable.emplace(
+          world, options.drive_rate_hz, [this](double angle_rad) { world.turntable()->Send(angle_rad); },
+          [this] { return world.turntable()->angle_rad(); });
     Sample();
   }
 
@@ -238,7 +238,7 @@ struct Twin::Impl final : public Clock {
     if (compass) compass->Sample(world);
     drive.Sample();
     if (pan) pan->Sample();
-    if (stand) stand->Sample();
+    if (turntable) turntable->Sample();
   }
 
   Time Now() const override { return world.Now(); }
@@ -259,7 +259,7 @@ struct Twin::Impl final : public Clock {
   std::optional<TwinColor> color;
   std::optional<TwinCompass> compass;
   TwinDrive drive;
-  std::optional<TwinTurn> pan, stand;
+  std::optional<TwinTurn> pan, turntable;
   std::function<void(sim::World&)> on_step;
   std::string no_gl;
 };
@@ -281,7 +281,7 @@ Robot Twin::robot() {
           .compass = impl_->compass ? &*impl_->compass : nullptr,
           .drive = &impl_->drive,
           .pan = impl_->pan ? &*impl_->pan : nullptr,
-          .stand = impl_->stand ? &*impl_->stand : nullptr};
+          .turntable = impl_->turntable ? &*impl_->turntable : nullptr};
 }
 sim::World& Twin::world() { return impl_->world; }
 const sim::World& Twin::world() const { return impl_->world; }

@@ -38,7 +38,7 @@ struct TwinOptions {
     double rate_hz = 10.0;
   };
 
-  sim::WorldOptions world;  // but for its materials and seed, which are those below
+  sim::WorldOptions world;  // its materials and seed are ignored: those below count
   sim::Materials materials;
   std::uint64_t seed = 1;
   Depth depth;
@@ -51,7 +51,7 @@ struct TwinOptions {
   int threads = 0;
 };
 
-// Which bodies are the car's: what its own cameras do not see.
+// For each body whether it belongs to the car, which its own cameras do not see.
 std::vector<bool> CarBodies(const sim::World& world);
 
 class Twin {

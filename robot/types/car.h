@@ -1,4 +1,4 @@
-// The car as plain data, as models/merlin/merlin.urdf says it. The twin builds a body of it, the stack takes its frames.
+// The car as plain data, as its URDF describes it. The twin builds a body from it; the stack takes its frames.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@ namespace merlin {
 struct CarMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Eigen::Vector3i> triangles;    // three places in vertices each, counter-clockwise from outside
-  std::optional<std::array<float, 4>> rgba;  // where the file says it
+  std::optional<std::array<float, 4>> rgba;  // none: the file gives no colour
 };
 
 struct CarShape {
@@ -51,9 +51,9 @@ struct CarLink {
   std::vector<CarShape> visual, collision;
 };
 
-// Motor, gear and encoder: the <drivetrain> element of the URDF.
+// Motor, gear and encoder: the element <drivetrain> of the URDF, or the map of that name in the mapping.
 struct Drivetrain {
-  double gear = 0.0;  // motor turns a wheel turn
+  double gear = 0.0;  // motor turns for one turn of a wheel
   int encoder_counts_per_motor_turn = 0;
   double motor_constant_v_s = 0.0;  // K: V per rad/s and N m per A
   double resistance_ohm = 0.0;
@@ -67,17 +67,17 @@ struct Drivetrain {
 
 // A driven wheel. Its joint's axis points to the left: positive turns roll the car forwards.
 struct CarWheel {
-  std::size_t link = 0;                 // its place in links
+  std::size_t link = 0;                 // its index in links
   Pose T_link_tyre = Pose::Identity();  // the tyre's middle, z along the axle
   double width_m = 0.0;                 // of the tyre
 };
 
 // What turns both cameras about the vertical, where a car has it.
 struct CarPan {
-  std::size_t link = 0;                // its place in links; the cameras hang below it
+  std::size_t link = 0;                // its index in links; the cameras hang below it
   Pose T_base_pan = Pose::Identity();  // at angle 0, z up along the axis
   double slew_rad_s = 0.0;
-  bool moves = false;  // else it is held ahead, as MERLIN's cameras are
+  bool moves = false;  // false: it is held straight ahead, as on MERLIN
 
   // The pose of a camera, given the one at angle 0 (ahead); positive to the left.
   Pose Turned(const Pose& T_base_camera, double angle_rad) const {
@@ -85,21 +85,21 @@ struct CarPan {
   }
 };
 
-// The car's parts go by their roles here; no user needs to know how its URDF calls them. Joints without a role do not
-// move.
+// The parts are known by their roles: no user of this struct needs their names in the URDF. Joints without a role do
+// not move.
 struct CarDescription {
   std::string name;
   std::filesystem::path file;         // its URDF; empty: made in code
-  std::vector<std::string> warnings;  // one sentence each, of what its user should know
+  std::vector<std::string> warnings;  // for the user, one sentence each
   std::vector<CarLink> links;  // parents before children; [0] is the base: on the ground below the rear axle's middle
   std::array<CarWheel, 4> wheels{};  // front left, front right, rear left, rear right
   std::array<std::size_t, 2>
-      knuckles{};             // places in links: what steers the front wheels, left, right; positive to the left
+      knuckles{};             // indices in links: what steers the front wheels, left and right; positive to the left
   std::optional<CarPan> pan;  // none: the cameras are fixed
   // Derived from the links, so that they cannot disagree with them:
-  double wheelbase_m = 0.0;       // means of left and right; the links stand as they are drawn
+  double wheelbase_m = 0.0;       // mean of left and right; the links keep the poses of the URDF
   double track_m = 0.0;           // between the wheels' middles, mean of front and rear
-  double steering_track_m = 0.0;  // between the two steering axes; they may stand beside the wheels' middles
+  double steering_track_m = 0.0;  // between the two steering axes, which may lie beside the wheels' middles
   double wheel_radius_m = 0.0;
   double steering_max_rad = 0.0;  // of the virtual wheel midway between the front ones, as the knuckles' limits allow
   double steering_offset_rad = 0.0;  // of the wheels from what the servo reports; only a calibration knows it
@@ -110,7 +110,7 @@ struct CarDescription {
 
   // Of a turntable the car stands on: through the base's origin, so that a turn moves no true pose from its place. (On a
   // small circle the judge would take the noise of the path for a turn of the map.)
-  Pose T_base_stand() const { return Pose::Identity(); }
+  Pose T_base_turntable() const { return Pose::Identity(); }
 
   double MetresPerCount() const {  // of the four-wheel mean's path
     return 2.0 * std::numbers::pi * wheel_radius_m / (drivetrain.gear * drivetrain.encoder_counts_per_motor_turn);

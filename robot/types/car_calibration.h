@@ -1,4 +1,4 @@
-// What drives on a measured course tell of a car better than its drawing does.
+// The numbers of a car that are measured better by driving a known course than by reading its drawing.
 #pragma once
 
 #include "robot/base/config.h"
@@ -19,7 +19,7 @@ void Visit(Visitor& v, CarCalibration& c) {
   v("steering_offset_rad", c.steering_offset_rad, {-0.3, 0.3});
 }
 
-// The car as the stack should believe it; its links stay as they are drawn.
+// The car with the calibrated numbers, for the stack. Its links keep the poses of the URDF.
 inline CarDescription Calibrated(CarDescription car, const CarCalibration& calibration) {
   car.wheel_radius_m = calibration.wheel_radius_m;
   car.wheelbase_m = calibration.wheelbase_m;

@@ -20,7 +20,7 @@ struct ColorSettings {
   bool operator==(const ColorSettings&) const = default;
 };
 
-// The data sheet of one model; values and their origin stand in models/cameras/<name>.yaml.
+// The data sheet of one model of camera. models/cameras/<name>.yaml has the values and their origin.
 struct ColorCameraSheet {
   std::string name;
   CameraModel camera{};
@@ -29,13 +29,13 @@ struct ColorCameraSheet {
   double full_well_e = 0.0;    // electrons at which a pixel clips; white (255) at gain 1
   double read_noise_e = 0.0;   // one sigma
   double falloff_power = 0.0;  // illumination falls off with cos^power of the angle to the axis; 4: natural vignetting
-  double exposure_nominal_s = 0.0;  // shows a normally lit room at gain 1 as it is
+  double exposure_nominal_s = 0.0;  // correct exposure of a normally lit room at gain 1
   double exposure_min_s = 0.0;
   double exposure_max_s = 0.0;
   double gain_max = 1.0;
 };
 
-// As the camera starts up: nominal exposure, then automatic.
+// The settings at power-up: nominal exposure, then automatic.
 inline ColorSettings DefaultSettings(const ColorCameraSheet& sheet) { return {.exposure_s = sheet.exposure_nominal_s}; }
 
 // Throws InputError for settings outside the sheet's ranges.

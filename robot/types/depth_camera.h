@@ -43,7 +43,7 @@ inline double UnambiguousRange_m(const DepthSettings& settings) {
   return UnambiguousRange_m(static_cast<double>(std::gcd(hz(settings.frequency_hz), hz(settings.second_frequency_hz))));
 }
 
-// The data sheet of one model; values and their origin stand in models/cameras/<name>.yaml.
+// The data sheet of one model of camera. models/cameras/<name>.yaml has the values and their origin.
 struct DepthCameraSheet {
   std::string name;
   CameraModel camera;
@@ -54,7 +54,7 @@ struct DepthCameraSheet {
   double contrast_corner_hz = 0.0;      // f_c of C(f) = C0 / sqrt(1 + (f / f_c)^2)
   double read_noise_e = 0.0;            // per tap, one sigma
   double full_well_e = 0.0;             // per tap
-  bool sbi = false;                     // has suppression of background illumination
+  bool sbi = false;                     // the chip suppresses background illumination
   double readout_s = 0.0;               // between two sub-frames
   double low_signal_amplitude_e = 0.0;  // below it a pixel is flagged kLowSignal
   double integration_min_s = 0.0;
@@ -69,7 +69,7 @@ struct DepthCameraSheet {
   double LampAmplitude_e_m2(const DepthSettings& settings) const {
     return Contrast(settings.frequency_hz) * signal_e_m2_per_us * settings.integration_s * 1e6;
   }
-  // From the first sub-frame's begin to the last one's end.
+  // From the start of the first sub-frame to the end of the last.
   double ExposureSpan_s(const DepthSettings& settings) const {
     return settings.sub_frames() * settings.integration_s + (settings.sub_frames() - 1) * readout_s;
   }
@@ -78,7 +78,7 @@ struct DepthCameraSheet {
 // Throws InputError for settings the sheet does not list as valid.
 void CheckSettings(const DepthCameraSheet& sheet, const DepthSettings& settings);
 
-// The valid settings that are closest to these. Throws InputError where closeness has no meaning (NaN).
+// The valid settings closest to these. Throws InputError for NaN.
 DepthSettings NearestSettings(const DepthCameraSheet& sheet, const DepthSettings& settings);
 
 // One measurement. Images are row-major, width x height, upper left first, as the camera sees.

@@ -1,6 +1,7 @@
-// How a model of time-of-flight camera errs: what the simulated camera does to its measurements and the stack must not
-// know. A sheet (models/cameras/<name>.yaml, key `errors`) lists what differs from these defaults. Origins: (g)
-// engineering guess, (m) recalled from the named paper; every one is a starting value for a calibration of the real camera.
+// The errors of one model of time-of-flight camera: what the simulated sensor does to its measurements. The stack must
+// not know them. A sheet (models/cameras/<name>.yaml, key `errors`) lists what differs from these defaults. Origins:
+// (g) engineering guess, (m) recalled from the named paper; every one is a starting value for a calibration of the real
+// camera.
 #pragma once
 
 #include "robot/base/config.h"

@@ -50,6 +50,7 @@ Footprint FootprintOf(const CarDescription& car) {
   const std::vector<Extent> extents = ExtentsOf(car);
   for (const auto& [middle, reach] : extents) {
     footprint.front_m = std::max(footprint.front_m, middle.x() + reach.x());
+    footprint.rear_m = std::max(footprint.rear_m, reach.x() - middle.x());
     footprint.half_width_m = std::max(footprint.half_width_m, std::abs(middle.y()) + reach.y());
   }
   for (const auto& [middle, reach] : extents)

@@ -16,8 +16,8 @@ struct CompassReading {
   double yaw_rad = 0.0;  // in (-pi, pi]
 };
 
-// What the car is to do, and for how long this holds. From expiry on, or at once if a number is not finite, the motor
-// is braked within 200 ms.
+// A command to the car, and how long it is valid. When it expires (at once if a number is not finite), the motor is
+// braked within 200 ms.
 struct DriveCommand {
   double speed_m_s = 0.0;     // of the rear axle's middle, negative: backwards
   double steering_rad = 0.0;  // of the virtual middle front wheel, positive: left
@@ -33,7 +33,7 @@ struct DriveState {
   bool expired = false;  // the last command has expired: the motor is braked
 };
 
-// Of what turns the cameras or the whole car.
+// The angle of a unit that turns the cameras, or of a turntable that turns the whole car.
 struct PanState {
   Time stamp{0};
   double angle_rad = 0.0;  // counter-clockwise seen from above, 0: straight ahead

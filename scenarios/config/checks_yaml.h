@@ -1,4 +1,4 @@
-// A scenario's checks, "name: limit" each, from YAML and back (see robot/base/yaml_visitor.h).
+// A scenario's checks, "name: limit" each, from YAML and back (see robot/base/yaml_reader.h).
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -6,22 +6,21 @@
 #include <string>
 #include <vector>
 
-#include "robot/base/yaml_visitor.h"
+#include "robot/base/yaml_reader.h"
 #include "scenarios/judge/checks.h"
 
 namespace merlin {
 
 inline void ReadYaml(YamlReader& reader, const YAML::Node& node, const std::string& field,
                      std::vector<CheckLimit>& checks) {
-  if (!node.IsMap()) return reader.Fault(node, field, "expected a map of limits");
   checks.clear();
-  for (const auto& entry : node) {
-    CheckLimit check{entry.first.Scalar(), 0.0};
+  for (const YamlEntry& entry : reader.file().Entries(node, field)) {
+    CheckLimit check{entry.key, 0.0};
     const std::string name = field + "." + check.name;
-    reader.ReadScalar(entry.second, name, check.limit, {-1e12, 1e12});
+    reader.ReadScalar(entry.value, name, check.limit, {-1e12, 1e12});
     checks.push_back(check);
     try {
-      RequireKnown(check, reader.Where(entry.first, name));
+      RequireKnown(check, reader.Where(entry.key_node, name));
     } catch (const InputError& error) {
       reader.Add(error);
     }

@@ -1,36 +1,23 @@
 #include "scenarios/config/hardware_file.h"
 
-#include <yaml-cpp/yaml.h>
-
-#include <set>
-#include <string>
-#include <vector>
-
-#include "robot/base/error.h"
-#include "robot/base/yaml_visitor.h"
+#include "robot/base/yaml_reader.h"
+#include "robot/base/yaml_writer.h"
 #include "robot/description/description.h"
+#include "scenarios/config/hardware_check.h"
 #include "scenarios/config/names.h"
 
 namespace merlin {
 
 HardwareConfig ReadHardwareFile(const std::filesystem::path& yaml) {
-  const std::string file = yaml.string();
-  if (!std::filesystem::is_regular_file(yaml))
-    throw InputError(file, "no such file", "a YAML file that names the car's devices");
-  YAML::Node root;
-  try {
-    root = YAML::LoadFile(file);
-  } catch (const YAML::Exception& error) {
-    throw InputError(file + ":" + std::to_string(error.mark.line + 1), "not YAML: " + error.msg);
-  }
+  YamlFile file(yaml, "a YAML file that names the car's devices");
   HardwareConfig config;
-  std::vector<std::string> faults;
-  YamlReader(root, file, "", {}, faults).ReadInto(config);
-  std::string all;
-  for (const std::string& fault : faults) all += (all.empty() ? "" : "\n") + fault;
-  if (!all.empty()) throw InputError(all);
+  file.ReadInto(config);
+  file.ThrowFaults();
+  RequireDistinctDevices(config, yaml);
   return config;
 }
+
+std::string ToYaml(const HardwareConfig& config) { return ToYamlText(config, 17); }
 
 HardwareCameras CamerasOf(const Scenario& scenario) {
   const CarDescription car = ReadCar(CarFile(scenario.car.model));

@@ -9,8 +9,12 @@
 namespace merlin {
 
 // YAML: a map for each device (drive, compass, depth, color, clock), its keys those of the device's config. Throws
-// InputError: no such file, broken YAML, an unknown key (names the nearest), a value out of its range; all at once.
+// InputError: no such file, broken YAML, an unknown key (names the nearest), a value out of its range; all at once. Also
+// where it names a device twice.
 HardwareConfig ReadHardwareFile(const std::filesystem::path& yaml);
+
+// Such a file's text, with every default written out.
+std::string ToYaml(const HardwareConfig& config);
 
 // What the scenario says of the cameras, and where the car's description has them.
 HardwareCameras CamerasOf(const Scenario& scenario);

@@ -75,6 +75,10 @@ fs::path CameraFile(const std::string& name) {
 }
 fs::path DepthCameraFile(const std::string& name) { return CameraOfKind(CameraKind::kDepth, name); }
 fs::path ColorCameraFile(const std::string& name) { return CameraOfKind(CameraKind::kColor, name); }
+fs::path ActorFile(const std::string& name) {
+  const fs::path folder = Home() / "models/actors";
+  return Resolve("actor", name, folder / (name + ".xml"), ".xml", StemsIn(folder, ".xml"));
+}
 fs::path CarFile(const std::string& name) {
   return Resolve("car", name, Home() / "models" / name / (name + ".urdf"), ".urdf", {"merlin"});
 }

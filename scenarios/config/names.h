@@ -16,7 +16,8 @@ std::filesystem::path RoomFile(const std::string& name_or_path);         // mode
 std::filesystem::path CameraFile(const std::string& name_or_path);       // models/cameras/<name>.yaml
 std::filesystem::path DepthCameraFile(const std::string& name_or_path);  // the same; refuses another kind
 std::filesystem::path ColorCameraFile(const std::string& name_or_path);
-std::filesystem::path CarFile(const std::string& name_or_path);  // models/<name>/<name>.urdf
+std::filesystem::path ActorFile(const std::string& name_or_path);  // models/actors/<name>.xml
+std::filesystem::path CarFile(const std::string& name_or_path);    // models/<name>/<name>.urdf
 
 // Sorted.
 std::vector<std::string> ScenarioNames();

@@ -1,50 +1,15 @@
 #include "scenarios/config/scenario.h"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
-#include <fstream>
 
-#include "robot/base/error.h"
 #include "robot/base/nearest_name.h"
-#include "robot/base/yaml_visitor.h"
+#include "robot/base/yaml_reader.h"
+#include "robot/base/yaml_writer.h"
 #include "scenarios/config/checks_yaml.h"
 #include "scenarios/config/names.h"
 
 namespace merlin {
 namespace {
-
-YAML::Node Load(const std::filesystem::path& file) {
-  try {
-    return YAML::LoadFile(file.string());
-  } catch (const YAML::BadFile&) {
-    throw InputError(file.string(), "cannot be read", "a scenario file");
-  } catch (const YAML::Exception& error) {
-    throw InputError(file.string() + ":" + std::to_string(error.mark.line + 1), "broken YAML: " + error.msg);
-  }
-}
-
-// "a.b=c" onto the tree: c is YAML itself, so numbers, texts and lists work alike.
-void Override(YAML::Node root, const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0)
-    throw InputError("--set", "not an assignment", "key.key=value", "'" + text + "'");
-  YAML::Node value;
-  try {
-    value = YAML::Load(text.substr(equals + 1));
-  } catch (const YAML::Exception& error) {
-    throw InputError("--set " + text, "broken YAML: " + error.msg);
-  }
-  YAML::Node node = root;
-  std::string path = text.substr(0, equals);
-  for (std::size_t dot; (dot = path.find('.')) != std::string::npos; path = path.substr(dot + 1)) {
-    const YAML::Node child = node[path.substr(0, dot)];
-    if (child.IsDefined() && !child.IsNull() && !child.IsMap())
-      throw InputError("--set " + text, "'" + path.substr(0, dot) + "' has no keys below it");
-    node.reset(child);
-  }
-  node[path] = value;
-}
 
 // A path in a scenario stands beside it, where there is such a file: so it works from any folder, and so does what is
 // written out of it.
@@ -55,50 +20,60 @@ void Anchor(std::string& name, const std::filesystem::path& folder) {
     name = std::filesystem::absolute(beside).lexically_normal().string();
 }
 
+// A behavior's former name still works, with a warning.
+void UseNewName(Scenario& scenario, const std::string& file, YamlFile& yaml) {
+  std::string& name = scenario.task.behavior;
+  const BehaviorInfo* const behavior = FindBehavior(name);
+  if (behavior == nullptr) {
+    yaml.Fault("task.behavior",
+               "unknown behavior '" + name + "'; did you mean '" + NearestName(name, BehaviorNames()) + "'?");
+  } else if (name != behavior->name) {
+    scenario.warnings.push_back("the behavior '" + name + "' is now called '" + behavior->name +
+                                "': please use the new name in " + file);
+    name = behavior->name;
+  }
+}
+
+// What no range of a single value says.
+void CheckRules(const Scenario& scenario, YamlFile& yaml) {
+  if (scenario.curtain != "open" && scenario.curtain != "closed")
+    yaml.Fault("curtain", "expected open or closed, got '" + scenario.curtain + "'");
+  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i)
+    if (!(scenario.obstacles[i].disappear_s > scenario.obstacles[i].appear_s))
+      yaml.Fault("obstacles[" + std::to_string(i) + "].disappear_s", "expected a time after its appear_s");
+}
+
 }  // namespace
 
 Scenario ReadScenario(const std::string& name, const std::vector<std::string>& overrides) {
   const std::filesystem::path file = ScenarioFile(name);
-  YAML::Node root = Load(file);
-  if (!root.IsMap()) throw InputError(file.string(), "no scenario", "a map of keys (room, car, sensors, task, ...)");
-  for (const std::string& text : overrides) Override(root, text);
-
-  std::set<std::string> sets;
-  for (const std::string& text : overrides) sets.insert(text.substr(0, text.find('=')));
-
+  YamlFile yaml(file, "a scenario: room, car, sensors, task, ...");
+  for (const std::string& text : overrides) yaml.Set(text);
   Scenario scenario;
-  std::vector<std::string> faults;
-  YamlReader(root, file.string(), "", sets, faults).ReadInto(scenario);
+  yaml.Require("", {"room"});
+  yaml.ReadInto(scenario);
   const auto anchor = [&](const char* field, std::string& named) {
-    if (!sets.contains(field)) Anchor(named, file.parent_path());
+    if (!yaml.IsSet(field)) Anchor(named, file.parent_path());
   };
+  const auto where = [&](const char* list, std::size_t i) {
+    return yaml.Where(yaml.root()[list][i], list + ("[" + std::to_string(i) + "]"));
+  };
+  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) scenario.obstacles[i].where = where("obstacles", i);
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    scenario.actors[i].where = where("actors", i);
+    anchor("actors", scenario.actors[i].model);
+  }
   anchor("room", scenario.room);
   anchor("car.model", scenario.car.model);
   anchor("car.calibration", scenario.car.calibration);
   anchor("sensors.depth.camera", scenario.sensors.depth.camera);
   if (scenario.sensors.color) anchor("sensors.color.camera", scenario.sensors.color->camera);
-  if (!root["room"].IsDefined()) faults.push_back(file.string() + ": room: missing; which room to drive in");
-  if (scenario.curtain != "open" && scenario.curtain != "closed")
-    faults.push_back(file.string() + ": curtain: expected open or closed, got '" + scenario.curtain + "'");
-  const std::vector<std::string> behaviors = BehaviorNames();
-  if (std::ranges::find(behaviors, scenario.task.behavior) == behaviors.end())
-    faults.push_back(file.string() + ": task.behavior: unknown behavior '" + scenario.task.behavior +
-                     "'; did you mean '" + NearestName(scenario.task.behavior, behaviors) + "'?");
-  for (const ObstacleEvent& event : scenario.obstacles)
-    if (!(event.disappear_s > event.appear_s))
-      faults.push_back(file.string() + ": obstacles: one disappears before it appears");
-  if (faults.empty()) return scenario;
-  std::string all = faults.front();
-  for (std::size_t i = 1; i < faults.size(); ++i) all += "\n" + faults[i];
-  throw InputError(all);
+  UseNewName(scenario, file.string(), yaml);
+  CheckRules(scenario, yaml);
+  yaml.ThrowFaults();
+  return scenario;
 }
 
-std::string ToYaml(const Scenario& scenario) {
-  YAML::Emitter out;
-  out.SetDoublePrecision(17);
-  Scenario copy = scenario;
-  YamlWriter(out).Write(copy);
-  return std::string(out.c_str()) + "\n";
-}
+std::string ToYaml(const Scenario& scenario) { return ToYamlText(scenario, 17); }
 
 }  // namespace merlin

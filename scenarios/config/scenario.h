@@ -10,9 +10,10 @@
 #include "autonomy/pilot.h"
 #include "perception/pipeline.h"
 #include "robot/base/config.h"
+#include "robot/types/drivetrain_config.h"
+#include "robot/types/steel.h"
 #include "scenarios/judge/result.h"
-#include "sim/compass.h"
-#include "sim/drive/drivetrain_config.h"
+#include "sim/actors/actor_config.h"
 #include "slam/slam.h"
 
 namespace merlin {
@@ -33,7 +34,7 @@ void Visit(Visitor& v, CarStart& c) {
 struct CarChoice {
   std::string model = "merlin";  // models/<name>/<name>.urdf, or a path
   CarStart start;
-  sim::DrivetrainConfig drivetrain;  // of the twin: how the true car differs from its model
+  DrivetrainConfig drivetrain;  // of the twin: how the true car differs from its model
   bool pan = false;         // the unit that turns the cameras moves (pan_joint of the model); false: it is held ahead
   std::string calibration;  // what the stack believes: a file of `merlin calibrate odometry`; empty: the model
 };
@@ -91,8 +92,8 @@ void Visit(Visitor& v, ColorSensor& c) {
 
 struct CompassSensor {
   double rate_hz = 10.0;
-  double noise_rad = 0.0087;      // one sigma of each angle; 0.5 deg (data sheets: 0.3-1 deg)
-  std::vector<sim::Steel> steel;  // of the twin: what bends its field
+  double noise_rad = 0.0087;  // one sigma of each angle; 0.5 deg (data sheets: 0.3-1 deg)
+  std::vector<Steel> steel;   // of the twin: what bends its field
 };
 
 template <class Visitor>
@@ -115,30 +116,6 @@ void Visit(Visitor& v, Sensors& c) {
   v("compass", c.compass);
 }
 
-// A box that appears before the car and goes away again.
-struct ObstacleEvent {
-  double appear_s = 0.0;  // run time
-  double disappear_s = 1e6;
-  double ahead_m = 3.0;   // its near face before the car's base_link along the car's heading at that instant
-  double left_m = 0.0;    // its middle to the left of it
-  double length_m = 0.4;  // edges along the heading, across, up
-  double width_m = 0.4;
-  double height_m = 0.5;
-  std::string material = "dark_box";
-};
-
-template <class Visitor>
-void Visit(Visitor& v, ObstacleEvent& c) {
-  v("appear_s", c.appear_s, {0.0, 1e6});
-  v("disappear_s", c.disappear_s, {0.0, 1e6});
-  v("ahead_m", c.ahead_m, {0.0, 100.0});
-  v("left_m", c.left_m, {-100.0, 100.0});
-  v("length_m", c.length_m, {0.01, 10.0});
-  v("width_m", c.width_m, {0.01, 10.0});
-  v("height_m", c.height_m, {0.01, 10.0});
-  v("material", c.material);
-}
-
 struct Scenario {
   std::string room;              // models/rooms/<name>.xml, or a path
   std::string curtain = "open";  // open or closed; closed needs a room with a curtain
@@ -147,11 +124,13 @@ struct Scenario {
   std::uint64_t seed = 1;
   Sensors sensors;
   Task task;
-  std::vector<ObstacleEvent> obstacles;
+  std::vector<sim::ObstacleConfig> obstacles;  // of the twin, as actors
+  std::vector<sim::ActorConfig> actors;
   std::vector<CheckLimit> checks;
   PerceptionConfig perception;
   SlamConfig slam;
   PilotConfig pilot;
+  std::vector<std::string> warnings;  // one sentence each, of what the file's author should know; not in the file
 };
 
 template <class Visitor>
@@ -164,6 +143,7 @@ void Visit(Visitor& v, Scenario& c) {
   v("sensors", c.sensors);
   v("task", c.task);
   v("obstacles", c.obstacles);
+  v("actors", c.actors);
   v("checks", c.checks);
   v("perception", c.perception);
   v("slam", c.slam);

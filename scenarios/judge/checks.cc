@@ -63,8 +63,10 @@ std::string NearestCheck(const std::vector<Figure>& figures, const std::string& 
   return NearestName(name, known);
 }
 
-Check EvaluateOne(const CheckLimit& limit, const std::vector<std::optional<double>>& values) {
-  Check check{.name = limit.name, .value = std::nullopt, .limit = limit.limit, .pass = false};
+Check EvaluateOne(const CheckLimit& limit, const Figure& figure, bool knows_truth) {
+  const std::vector<std::optional<double>>& values = figure.values;
+  Check check{.name = limit.name, .limit = limit.limit, .judged = CanKnow(figure.name, knows_truth)};
+  if (!check.judged) return check;
   if (!std::all_of(values.begin(), values.end(), [](const auto& value) { return value.has_value(); })) return check;
   check.value =
       IsMax(limit) ? *std::max_element(values.begin(), values.end()) : *std::min_element(values.begin(), values.end());
@@ -83,24 +85,38 @@ void RequireKnown(const CheckLimit& limit, const std::string& where) {
     throw InputError(where, "limit of check " + limit.name, "a finite number", fmt::format("{}", limit.limit));
 }
 
-std::vector<Check> Evaluate(const std::vector<CheckLimit>& limits, const Metrics& metrics, const std::string& where) {
+std::vector<Check> Evaluate(const std::vector<CheckLimit>& limits, const Metrics& metrics, bool knows_truth,
+                            const std::string& where) {
   const std::vector<Figure> figures = Figures(metrics);
   std::vector<Check> checks;
   for (const CheckLimit& limit : limits) {
     RequireKnown(limit, where);
-    checks.push_back(EvaluateOne(limit, Find(figures, limit)->values));
+    checks.push_back(EvaluateOne(limit, *Find(figures, limit), knows_truth));
   }
   return checks;
 }
 
 std::string Name(Verdict verdict) {
-  if (verdict == Verdict::kInterrupted) return "interrupted";
-  return verdict == Verdict::kPass ? "pass" : "fail";
+  switch (verdict) {
+    case Verdict::kPass:
+      return "pass";
+    case Verdict::kInterrupted:
+      return "interrupted";
+    case Verdict::kNotJudged:
+      return "not judged";
+    default:
+      return "fail";
+  }
 }
 
 Verdict Judge(const std::vector<Check>& checks) {
-  const bool pass = std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.pass; });
-  return pass ? Verdict::kPass : Verdict::kFail;
+  Verdict verdict = Verdict::kNotJudged;
+  for (const Check& check : checks) {
+    if (!check.judged) continue;
+    if (!check.pass) return Verdict::kFail;
+    verdict = Verdict::kPass;
+  }
+  return verdict;
 }
 
 }  // namespace merlin

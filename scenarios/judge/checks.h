@@ -20,23 +20,25 @@ struct Check {
   std::string name{};
   std::optional<double> value{};  // of a metric of two values the one nearer to failing; empty if one is not known
   double limit = 0.0;
-  bool pass = false;
+  bool judged = true;  // false: this run cannot know the metric, see CanKnow
+  bool pass = false;   // false also where it is not judged
 };
 
 // Throws InputError for a name that is no metric's with _max or _min (names the nearest), or a limit that is not
 // finite. where: the file, and the line if known.
 void RequireKnown(const CheckLimit& limit, const std::string& where);
 
-// Each limit judged, in the order given: value <= limit, value >= limit; both values of a metric of two. A metric that
-// is not known fails. Throws as RequireKnown.
-std::vector<Check> Evaluate(const std::vector<CheckLimit>& limits, const Metrics& metrics, const std::string& where);
+// Each limit judged, in the order given: value <= limit, value >= limit; both values of a metric of two. A metric that is
+// not known fails; one that this run cannot know (CanKnow) is not judged. Throws as RequireKnown.
+std::vector<Check> Evaluate(const std::vector<CheckLimit>& limits, const Metrics& metrics, bool knows_truth,
+                            const std::string& where);
 
-enum class Verdict { kPass, kFail, kInterrupted };
+enum class Verdict { kPass, kFail, kInterrupted, kNotJudged };
 
-// "pass", "fail", "interrupted"
+// "pass", "fail", "interrupted", "not judged"
 std::string Name(Verdict verdict);
 
-// kPass if every check passed; no checks, nothing failed.
+// kFail if a check failed; kPass if one passed and none failed; kNotJudged if nothing was judged.
 Verdict Judge(const std::vector<Check>& checks);
 
 }  // namespace merlin

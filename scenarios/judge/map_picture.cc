@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "robot/base/error.h"
 #include "scenarios/judge/point_grid.h"
 #include "scenarios/judge/sheet.h"
 
@@ -17,11 +15,10 @@ namespace merlin {
 namespace {
 
 constexpr double kCeiling_m = 2.5;
-constexpr double kFloor_m = 0.1;  // what is lower is drawn pale: it is the walls that make a map
+constexpr double kFloor_m = 0.1;  // what is lower is drawn pale: the walls make the map
 
 // Blue, green, red.
-const cv::Scalar kPaper(255, 255, 255), kGrid(230, 232, 232), kInk(45, 40, 38), kPale(120, 115, 110),
-    kFloorColor(214, 220, 208);
+const cv::Scalar kPaper(255, 255, 255), kGrid(230, 232, 232), kPale(120, 115, 110), kFloorColor(214, 220, 208);
 const cv::Scalar kPlanColor(0, 0, 0), kTruthColor(60, 160, 250), kEstimateColor(35, 20, 190);
 
 // Floor pale, then low: green, high: dark blue (a part of viridis).
@@ -84,7 +81,7 @@ void DrawCloud(Sheet& sheet, std::vector<Eigen::Vector3d> points, const cv::Mat&
   std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
   for (const Eigen::Vector3d& p : points)
     if (sheet.Shows(p.head<2>()))
-      sheet.Speck(sheet.Pixel(p.head<2>()), p.z() < kFloor_m ? 1.5 : 3.0, HeightColor(ramp, p.z()));
+      sheet.canvas().Speck(sheet.Pixel(p.head<2>()), p.z() < kFloor_m ? 1.5 : 3.0, HeightColor(ramp, p.z()));
 }
 
 void DrawStart(Sheet& sheet, const Trajectory& truth) {
@@ -93,11 +90,11 @@ void DrawStart(Sheet& sheet, const Trajectory& truth) {
   const double yaw_rad = Yaw(truth.front().T);
   const Eigen::Vector2d ahead(std::cos(yaw_rad), -std::sin(yaw_rad)), left(ahead.y(), -ahead.x());
   const Eigen::Vector2d tip = start + 30.0 * ahead;
-  sheet.Line({start, tip}, 3, kInk);
-  sheet.Line({tip - 9.0 * ahead + 7.0 * left, tip, tip - 9.0 * ahead - 7.0 * left}, 3, kInk);
-  sheet.Dot(start, 8.5, kInk);
-  sheet.Dot(start, 5.5, kPaper);
-  sheet.Text(start + Eigen::Vector2d(-18, -16), "start", 12, kInk);
+  sheet.canvas().Line({start, tip}, 3, kInk);
+  sheet.canvas().Line({tip - 9.0 * ahead + 7.0 * left, tip, tip - 9.0 * ahead - 7.0 * left}, 3, kInk);
+  sheet.canvas().Dot(start, 8.5, kInk);
+  sheet.canvas().Dot(start, 5.5, kPaper);
+  sheet.canvas().Text(start + Eigen::Vector2d(-18, -16), "start", 12, kInk);
 }
 
 std::string Metres(const std::optional<double>& length_m) { return length_m ? fmt::format("{:.2f}", *length_m) : "?"; }
@@ -118,11 +115,12 @@ void DrawScaleBar(Sheet& sheet, double length_m) {
   const Eigen::Vector2d left(Sheet::kMargin_px, sheet.Height_px() - 38),
       right = left + Eigen::Vector2d(sheet.Metres_px(length_m), 0);
   const Eigen::Vector2d tick(0, 7);
-  sheet.Line({left - tick, left + tick}, 2.5, kInk);
-  sheet.Line({right - tick, right + tick}, 2.5, kInk);
-  sheet.Line({left, right}, 2.5, kInk);
+  sheet.canvas().Line({left - tick, left + tick}, 2.5, kInk);
+  sheet.canvas().Line({right - tick, right + tick}, 2.5, kInk);
+  sheet.canvas().Line({left, right}, 2.5, kInk);
   const std::string label = fmt::format("{} m", length_m);
-  sheet.Text(0.5 * (left + right) + Eigen::Vector2d(-0.5 * sheet.TextWidth_px(label, 13), -12), label, 13, kInk);
+  sheet.canvas().Text(0.5 * (left + right) + Eigen::Vector2d(-0.5 * Canvas::TextWidth_px(label, 13), -12), label, 13,
+                      kInk);
 }
 
 // From the right: the two paths, the plan, the heights' colours.
@@ -130,24 +128,24 @@ void DrawLegend(Sheet& sheet, bool has_outline, const cv::Mat& ramp) {
   const double y_px = sheet.Height_px() - 38;
   double x_px = Sheet::kWidth_px - Sheet::kMargin_px;
   const auto entry = [&](const std::string& label, double width_px, const cv::Scalar& color) {
-    x_px -= sheet.TextWidth_px(label, 13);
-    sheet.Text({x_px, y_px + 5}, label, 13, kInk);
-    sheet.Line({{x_px - 48, y_px}, {x_px - 12, y_px}}, width_px, color);
+    x_px -= Canvas::TextWidth_px(label, 13);
+    sheet.canvas().Text({x_px, y_px + 5}, label, 13, kInk);
+    sheet.canvas().Line({{x_px - 48, y_px}, {x_px - 12, y_px}}, width_px, color);
     x_px -= 80;
   };
   entry("estimated path", 2, kEstimateColor);
   entry("true path", 6, kTruthColor);
   if (has_outline) entry("true plan", 1, kPlanColor);
   const std::string high = fmt::format("{} m high", kCeiling_m), low = "map: 0";
-  x_px -= sheet.TextWidth_px(high, 13);
-  sheet.Text({x_px, y_px + 5}, high, 13, kInk);
+  x_px -= Canvas::TextWidth_px(high, 13);
+  sheet.canvas().Text({x_px, y_px + 5}, high, 13, kInk);
   x_px -= 12;
   constexpr int kSteps = 100;
   for (int i = 0; i < kSteps; ++i)
-    sheet.Fill({x_px - kSteps + i, y_px - 6}, {x_px - kSteps + i + 1, y_px + 6},
-               HeightColor(ramp, kCeiling_m * i / kSteps));
-  x_px -= kSteps + 10 + sheet.TextWidth_px(low, 13);
-  sheet.Text({x_px, y_px + 5}, low, 13, kInk);
+    sheet.canvas().Fill({x_px - kSteps + i, y_px - 6}, {x_px - kSteps + i + 1, y_px + 6},
+                        HeightColor(ramp, kCeiling_m * i / kSteps));
+  x_px -= kSteps + 10 + Canvas::TextWidth_px(low, 13);
+  sheet.canvas().Text({x_px, y_px + 5}, low, 13, kInk);
 }
 
 Box View(const MapPicture& picture, const std::vector<Eigen::Vector3d>& points) {
@@ -158,12 +156,6 @@ Box View(const MapPicture& picture, const std::vector<Eigen::Vector3d>& points) 
   if (picture.outline.empty()) AddBulk(box, points);
   if (!(box.min.array() <= box.max.array()).all()) box.Add({0.0, 0.0});
   return box;
-}
-
-std::string Encode(const cv::Mat& image) {
-  std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".png", image, bytes)) throw MachineError("map.png: OpenCV has no PNG encoder");
-  return std::string(bytes.begin(), bytes.end());
 }
 
 }  // namespace
@@ -179,11 +171,11 @@ std::string ToPng(const MapPicture& picture) {
   sheet.LineInWorld(Positions(picture.truth, Pose::Identity()), 6, kTruthColor);
   sheet.LineInWorld(Positions(picture.estimate, picture.T_world_map), 2, kEstimateColor);
   DrawStart(sheet, picture.truth);
-  sheet.Text({Sheet::kMargin_px, 54}, picture.title, 24, kInk, true);
-  sheet.Text({Sheet::kMargin_px, 90}, Subtitle(picture), 15, kPale);
+  sheet.canvas().Text({Sheet::kMargin_px, 54}, picture.title, 24, kInk, TextAlign::kLeft, true);
+  sheet.canvas().Text({Sheet::kMargin_px, 90}, Subtitle(picture), 15, kPale);
   DrawScaleBar(sheet, step_m);
   DrawLegend(sheet, !picture.outline.empty(), ramp);
-  return Encode(sheet.Finished());
+  return sheet.canvas().ToPng();
 }
 
 }  // namespace merlin

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
+#include <string_view>
 
 namespace merlin {
 
@@ -54,6 +56,19 @@ void VisitMetrics(const Metrics& m, Visitor visit) {
   visit("stack_rss_mb", m.stack_rss_mb);
   visit("obstacle_gap_m", m.obstacle_gap_m);
   visit("obstacle_stop_s", m.obstacle_stop_s);
+}
+
+// Whether a run can know a figure at all. Without the truth: not what compares with it (the distance is the odometry's
+// then). With it: not the memory of the stack alone, for the simulation shares its process. name: as a check calls it, so
+// that "map_size_m.0" is one of map_size_m.
+inline bool CanKnow(std::string_view name, bool knows_truth) {
+  if (name == "stack_rss_mb") return !knows_truth;
+  if (knows_truth) return true;
+  for (const std::string_view truth : {"laps", "collisions", "coverage_percent"})
+    if (name == truth) return false;
+  for (const std::string_view truth : {"ate_", "rpe_", "map_size_", "map_to_plan_", "obstacle_"})
+    if (name.starts_with(truth)) return false;
+  return true;
 }
 
 }  // namespace merlin

@@ -59,6 +59,8 @@ std::string Xml(std::string_view text) {
 std::string TestCase(const RunResult& result, const Check& check) {
   const std::string open =
       fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"0\"", Xml(result.scenario), Xml(check.name));
+  if (!check.judged)
+    return open + ">\n      <skipped message=\"not judged: this run cannot know it\"/>\n    </testcase>\n";
   if (check.pass) return open + "/>\n";
   const std::string value = check.value ? fmt::format("{}", *check.value) : "not known";
   return open + fmt::format(">\n      <failure message=\"{}: value {}, limit {}\"/>\n    </testcase>\n",
@@ -70,8 +72,10 @@ std::string TestCase(const RunResult& result, const Check& check) {
 std::string ToJson(const RunResult& result) {
   Json checks = Json::array();
   for (const Check& check : result.checks)
-    checks.push_back(
-        {{"name", check.name}, {"value", ToJsonValue(check.value)}, {"limit", check.limit}, {"pass", check.pass}});
+    checks.push_back({{"name", check.name},
+                      {"value", ToJsonValue(check.value)},
+                      {"limit", check.limit},
+                      {"pass", check.judged ? Json(check.pass) : Json()}});
   Json metrics = Json::object();
   VisitMetrics(result.metrics, [&metrics](std::string_view name, const auto& figure) {
     Json value = ToJsonValue(figure);
@@ -98,13 +102,15 @@ std::string ToJson(const RunResult& result) {
 }
 
 std::string ToJUnit(const RunResult& result) {
+  const auto skipped = std::ranges::count_if(result.checks, [](const Check& check) { return !check.judged; });
   const auto failures =
-      std::count_if(result.checks.begin(), result.checks.end(), [](const Check& check) { return !check.pass; });
+      std::ranges::count_if(result.checks, [](const Check& check) { return check.judged && !check.pass; });
   const std::string error = result.verdict == Verdict::kInterrupted ? "interrupted" : result.fault;
   const double time_s = result.metrics.wall_time_s.value_or(0.0);
-  const std::string counts = fmt::format(
-      "name=\"{} seed {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"", Xml(result.scenario),
-      result.seed, result.checks.size() + 1, failures, error.empty() ? 0 : 1, std::isfinite(time_s) ? time_s : 0.0);
+  const std::string counts =
+      fmt::format("name=\"{} seed {}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"",
+                  Xml(result.scenario), result.seed, result.checks.size() + 1, failures, error.empty() ? 0 : 1, skipped,
+                  std::isfinite(time_s) ? time_s : 0.0);
   std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite " + counts + ">\n";
   xml += fmt::format("    <testcase classname=\"{}\" name=\"run\" time=\"0\"", Xml(result.scenario));
   xml += error.empty() ? "/>\n" : fmt::format(">\n      <error message=\"{}\"/>\n    </testcase>\n", Xml(error));

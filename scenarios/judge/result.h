@@ -29,11 +29,11 @@ struct RunResult {
   std::vector<std::pair<std::string, std::string>> versions{};  // of the program and what it links: name, version
 };
 
-// The text of result.json. Bytes that are no UTF-8 become U+FFFD.
+// The text of result.json; "pass" of a check that was not judged is null. Bytes that are no UTF-8 become U+FFFD.
 std::string ToJson(const RunResult& result);
 
 // The text of junit.xml: one test case a check, and one named "run", in error where the run was
-// interrupted or ended by a fault. UTF-8 stays as it is; what XML may not hold is replaced, so that it is well formed.
+// interrupted or ended by a fault; a check that was not judged is skipped. UTF-8 stays as it is; what XML may not hold is replaced, so that it is well formed.
 std::string ToJUnit(const RunResult& result);
 
 }  // namespace merlin

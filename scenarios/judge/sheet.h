@@ -1,11 +1,11 @@
-// The sheet of paper a map is drawn on: a header, a plot of the world to scale, a footer.
+// A canvas with a plot of the world, to scale, between a header and a footer: what a map is drawn on.
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
-#include <opencv2/core.hpp>
-#include <string>
 #include <vector>
+
+#include "scenarios/judge/canvas.h"
 
 namespace merlin {
 
@@ -20,8 +20,7 @@ struct Box {
   }
 };
 
-// Lengths are pixels of the finished picture, from its upper left corner; world x runs right, y up. Colours: blue,
-// green, red.
+// Pixels are those of the canvas; world x runs right, y up.
 class Sheet {
  public:
   static constexpr double kWidth_px = 1400.0;
@@ -36,27 +35,15 @@ class Sheet {
   bool Shows(const Eigen::Vector2d& p) const;
   Eigen::Vector2d Pixel(const Eigen::Vector2d& p) const;
 
-  void Fill(const Eigen::Vector2d& a_px, const Eigen::Vector2d& b_px, const cv::Scalar& color);
-  void Line(const std::vector<Eigen::Vector2d>& points_px, double width_px, const cv::Scalar& color,
-            bool closed = false);
   void LineInWorld(const std::vector<Eigen::Vector2d>& points_m, double width_px, const cv::Scalar& color,
                    bool closed = false);
-  void Dot(const Eigen::Vector2d& p_px, double radius_px, const cv::Scalar& color);
-  // A point of a cloud: a square, quicker than a dot.
-  void Speck(const Eigen::Vector2d& p_px, double edge_px, const cv::Scalar& color);
-  // Text (ASCII) from its left end on its base line; size_px: height of capitals.
-  void Text(const Eigen::Vector2d& p_px, const std::string& text, double size_px, const cv::Scalar& color,
-            bool bold = false);
-  double TextWidth_px(const std::string& text, double size_px) const;
-
-  // 8-bit BGR.
-  cv::Mat Finished() const;
+  Canvas& canvas() { return canvas_; }
 
  private:
-  double plot_height_px_ = 0.0;
+  double plot_height_px_;
   double px_per_m_ = 1.0;
   Box view_;
-  cv::Mat image_;
+  Canvas canvas_;
 };
 
 }  // namespace merlin

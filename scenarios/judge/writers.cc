@@ -1,18 +1,13 @@
 #include "scenarios/judge/writers.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <bit>
 #include <cassert>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <iterator>
-
-#include "robot/base/error.h"
 
 namespace merlin {
 namespace {
@@ -25,11 +20,6 @@ constexpr int kOccupiedFromPercent = 65;
 constexpr double kFreeBelow = 0.196;
 constexpr int kFreeToPercent = 19;
 constexpr char kFree = static_cast<char>(254), kOccupied = 0, kUnknown = static_cast<char>(205);
-
-[[noreturn]] void Fail(const std::filesystem::path& file, const std::filesystem::path& part, int error) {
-  if (!part.empty()) ::unlink(part.c_str());
-  throw MachineError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(error)));
-}
 
 void AppendStamp(std::string& text, Time stamp) {
   const std::int64_t ns = stamp.count();
@@ -51,25 +41,6 @@ char Grey(std::int8_t cell) {
 }
 
 }  // namespace
-
-void WriteFile(const std::filesystem::path& file, std::string_view bytes) {
-  std::filesystem::path part = file;
-  part += ".part";
-  const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) Fail(file, {}, errno);
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      const int error = written == 0 ? ENOSPC : errno;
-      ::close(descriptor);
-      Fail(file, part, error);
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  if (::close(descriptor) != 0) Fail(file, part, errno);  // a network disk may say only now that it is full
-  if (::rename(part.c_str(), file.c_str()) != 0) Fail(file, part, errno);
-}
 
 std::string ToTum(const Trajectory& trajectory) {
   std::string text;

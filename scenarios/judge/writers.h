@@ -1,23 +1,19 @@
-// The files a run leaves, as bytes, and how bytes become a file. Text is made first and written whole, so that what is
-// hashed is what is written.
+// The files a run leaves, as bytes. Text is made first and written whole (WriteFile), so that what is hashed is what is
+// written.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "robot/base/files.h"
 #include "robot/types/trajectory.h"
 #include "scenarios/judge/map_point.h"
 
 namespace merlin {
-
-// Writes the file whole or not at all: into "<file>.part" first, then renamed. Throws MachineError (disk full, no
-// permission), and leaves no ".part" behind.
-void WriteFile(const std::filesystem::path& file, std::string_view bytes);
 
 // One line a pose: "stamp_s x y z qx qy qz qw", nine decimals, qw >= 0 (the TUM RGB-D benchmark's format).
 std::string ToTum(const Trajectory& trajectory);

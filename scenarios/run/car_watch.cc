@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/world/room_box.h"
+
 namespace merlin {
 namespace {
 
@@ -14,54 +16,17 @@ constexpr double kTilt_rad = std::numbers::pi / 4.0;
 constexpr double kSunk_m = 0.5;
 constexpr double kOutside_m = 1.0;
 
-using Box = Eigen::AlignedBox3d;
-
-// In the geom's own frame; empty for a plane without end.
-Box LocalBox_m(const mjModel* model, int geom) {
-  const Eigen::Vector3d size = Eigen::Vector3d::Map(model->geom_size + 3 * geom);
-  if (model->geom_type[geom] == mjGEOM_PLANE) {
-    if (size.x() <= 0.0 || size.y() <= 0.0) return Box();
-    return Box(Eigen::Vector3d(-size.x(), -size.y(), 0.0), Eigen::Vector3d(size.x(), size.y(), 0.0));
-  }
-  const Eigen::Vector3d middle = Eigen::Vector3d::Map(model->geom_aabb + 6 * geom);
-  const Eigen::Vector3d half = Eigen::Vector3d::Map(model->geom_aabb + 6 * geom + 3);
-  return Box(middle - half, middle + half);
-}
-
-Pose T_world_geom(const mjData* data, int geom) {
-  Pose pose = Pose::Identity();
-  pose.translation() = Eigen::Vector3d::Map(data->geom_xpos + 3 * geom);
-  pose.linear() = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>::Map(data->geom_xmat + 9 * geom);
-  return pose;
-}
-
 }  // namespace
 
-std::optional<Eigen::AlignedBox2d> RoomBox_m(const sim::World& world) {
-  const mjModel* model = world.model();
-  Eigen::AlignedBox2d room;
-  for (int geom = 0; geom < model->ngeom; ++geom) {
-    const bool is_obstacle = model->body_mocapid[model->geom_bodyid[geom]] >= 0;
-    if (world.IsCarGeom(geom) || is_obstacle) continue;
-    const Box box = LocalBox_m(model, geom);
-    if (box.isEmpty()) continue;
-    for (int corner = 0; corner < 8; ++corner)
-      room.extend(
-          (T_world_geom(world.data(), geom) * box.corner(static_cast<Box::CornerType>(corner))).head<2>().eval());
-  }
-  if (!room.contains(world.T_world_base().translation().head<2>().eval())) return std::nullopt;
-  return room;
-}
-
-CarWatch::CarWatch(const sim::World& world, bool on_stand)
-    : on_stand_(on_stand),
+CarWatch::CarWatch(const sim::World& world, bool on_turntable)
+    : on_turntable_(on_turntable),
       start_z_m_(world.T_world_base().translation().z()),
-      room_m_(RoomBox_m(world)),
+      room_m_(sim::RoomBox_m(world)),
       on_ground_(world.Now()) {}
 
 void CarWatch::Watch(const sim::World& world) {
   if (!lost_.empty()) return;
-  if (on_stand_ || world.WheelTouchesGround()) on_ground_ = world.Now();
+  if (on_turntable_ || world.WheelTouchesGround()) on_ground_ = world.Now();
   if (const std::string reason = Reason(world); !reason.empty())
     lost_ = fmt::format("at {:.3f} s {}", Seconds(world.Now()), reason);
 }

@@ -9,14 +9,10 @@
 
 namespace merlin {
 
-// The floor plan's bounding box [m], x and y in the world's frame: of all geoms but the car's, obstacles' and planes
-// without end. Empty: there are none, or the car does not stand in it (the room lies beside the car).
-std::optional<Eigen::AlignedBox2d> RoomBox_m(const sim::World& world);
-
 class CarWatch {
  public:
-  // on_stand: the car stands on the turntable, where its wheels are to touch nothing.
-  CarWatch(const sim::World& world, bool on_stand);
+  // on_turntable: the car stands on the turntable, where its wheels are to touch nothing.
+  CarWatch(const sim::World& world, bool on_turntable);
 
   // After every step.
   void Watch(const sim::World& world);
@@ -28,7 +24,7 @@ class CarWatch {
  private:
   std::string Reason(const sim::World& world) const;
 
-  bool on_stand_;
+  bool on_turntable_;
   double start_z_m_;
   std::optional<Eigen::AlignedBox2d> room_m_;
   Time on_ground_;  // when a wheel last touched it

@@ -1,18 +1,19 @@
 #include "scenarios/run/drive_loop.h"
 
 #include <chrono>
-#include <cmath>
 #include <exception>
-#include <string>
+#include <memory>
 #include <utility>
 
 #include "robot/base/error.h"
+#include "robot/kinematics/ackermann.h"
+#include "robot/kinematics/motion.h"
 
 namespace merlin {
 namespace {
 
-constexpr Duration kSilent = std::chrono::seconds(1);
-constexpr Duration kStandLimit = std::chrono::seconds(3);
+constexpr Duration kHaltValid = std::chrono::seconds(1);
+constexpr Duration kHaltLimit = std::chrono::seconds(3);
 
 Rig RigOf(const Robot& robot, const CarDescription& car) {
   const DepthCameraInfo& depth = robot.depth->Info();
@@ -22,27 +23,8 @@ Rig RigOf(const Robot& robot, const CarDescription& car) {
     rig.T_base_color = robot.color->Info().T_base_camera;
   }
   rig.pans = robot.pan != nullptr && car.pan;
-  rig.on_stand = robot.stand != nullptr;
+  rig.on_turntable = robot.turntable != nullptr;
   return rig;
-}
-
-// Uses a device. What its driver throws becomes a DeviceError that names the device.
-template <class Use>
-auto Ask(const std::string& device, const Use& use) {
-  try {
-    return use();
-  } catch (const std::exception& error) {
-    throw DeviceError(device + ": " + error.what());
-  } catch (...) {
-    throw DeviceError(device + ": its driver threw an unknown exception");
-  }
-}
-
-// Of a device that may be absent.
-template <class Device>
-auto Poll(const std::string& name, Device* device) -> decltype(device->Poll()) {
-  if (device == nullptr) return std::nullopt;
-  return Ask(name, [device] { return device->Poll(); });
 }
 
 }  // namespace
@@ -57,127 +39,140 @@ DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const Percep
       pilot_(car, task, pilot),
       energy_(car, pilot.energy),
       arbiter_(car, pilot.avoid, pilot.arbitrate),
-      metres_per_count_(car.MetresPerCount()) {}
+      car_(car) {}
 
-void DriveLoop::Listen(const LoopObserver& observer) {
-  while (auto state = Poll("drive", robot_.drive)) {
-    last_drive_ = robot_.clock->Now();
-    pipeline_.Add(*state);
-    energy_.Update(*state);
-    const double counts = static_cast<double>(state->encoder_counts - status_.state.encoder_counts);
-    if (status_.state.stamp > Time(0) && state->stamp > status_.state.stamp)
-      status_.speed_m_s = counts * metres_per_count_ / Seconds(state->stamp - status_.state.stamp);
-    status_.state = *state;
-  }
-  while (const auto state = Poll("pan unit", robot_.pan)) pipeline_.AddPan(*state);
-  while (const auto state = Poll("stand", robot_.stand)) pipeline_.AddStand(*state);
-  while (const auto reading = Poll("compass", robot_.compass)) pipeline_.Add(*reading);
-  while (auto frame = Poll("colour camera", robot_.color)) {
-    if (observer.color) observer.color(*frame);
-    pipeline_.Add(std::move(*frame));
-  }
+void DriveLoop::Tick(const ManualInput& manual) {
+  state_.now = robot_.clock->Now();
+  Listen();
+  for (const auto& frame : state_.heard.depth) Decide(*frame);
+  Supervise();
+  Arbitrate(manual);
+  Act();
 }
 
-std::optional<Decision> DriveLoop::Decide(const LoopObserver& observer, bool forget) {
-  while (auto frame = Poll("depth camera", robot_.depth)) {
-    last_depth_ = robot_.clock->Now();
-    if (observer.depth) observer.depth(*frame);
-    const auto begin = std::chrono::steady_clock::now();
-    if (integration_.adapt) AdaptExposure(*frame);
-    auto observation = pipeline_.Process(std::move(*frame));
-    if (!observation) continue;
-    const auto T_map_base = slam_.Update(*observation);
-    if (forget) pilot_.Forget();
-    Decision decision = pilot_.Decide(*observation, T_map_base, slam_);
-    if (energy_.level() == EnergyLevel::kLow) decision.doing += "; battery low";
-    stack_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-    seen_ = std::move(observation);
-    return decision;
-  }
-  return std::nullopt;
+void DriveLoop::Listen() {
+  state_.heard = {};
+  ears_->Hear(state_.heard);
+  for (const DriveState& state : state_.heard.drive) Follow(state);
+  for (const PanState& state : state_.heard.pan) pipeline_.AddPan(state);
+  for (const PanState& state : state_.heard.turntable) pipeline_.AddTurntable(state);
+  for (const CompassReading& reading : state_.heard.compass) pipeline_.Add(reading);
+  for (const auto& frame : state_.heard.color) pipeline_.Add(frame);
 }
 
-bool DriveLoop::Tick(const LoopObserver& observer) {
-  Listen(observer);
-  bool done = false;
-  while (const auto decision = Decide(observer, false)) {
-    Send(decision->command);
-    if (robot_.stand != nullptr && decision->stand_rad) Ask("stand", [&] { robot_.stand->Send(*decision->stand_rad); });
-    done = decision->done;
-    if (observer.tick) observer.tick(robot_.clock->Now(), *decision);
-  }
-  return done;
+void DriveLoop::Follow(const DriveState& state) {
+  pipeline_.Add(state);
+  energy_.Update(state);
+  const DriveState& before = state_.drive;
+  if (before.stamp > Time(0) && state.stamp > before.stamp)
+    state_.speed_m_s =
+        Path_m(car_, state.encoder_counts - before.encoder_counts, WheelsAngle_rad(car_, state.steering_rad)) /
+        Seconds(state.stamp - before.stamp);
+  state_.drive = state;
+}
+
+void DriveLoop::Decide(const DepthFrame& frame) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (integration_.adapt) AdaptExposure(frame);
+  auto observation = pipeline_.Process(frame);
+  if (!observation) return;
+  state_.T_map_base = slam_.Update(*observation);
+  const Driver before = state_.arbitration.driver;
+  Decision decision = pilot_.Decide({.now = state_.now,
+                                     .observation = *observation,
+                                     .T_map_base = state_.T_map_base,
+                                     .local_map = slam_.local_map(),
+                                     .grid = slam_.occupancy(),
+                                     .lost_frames = slam_.lost_frames(),
+                                     .taken_over = before == Driver::kManual || before == Driver::kObstacleStop});
+  if (energy_.level() == EnergyLevel::kLow) decision.doing += "; battery low";
+  stack_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+  state_.observation = std::make_shared<const Observation>(*std::move(observation));
+  state_.decision = std::move(decision);
+  state_.decided = state_.now;
+  state_.path_m = slam_.path_m();
+  state_.loops = slam_.loops();
+}
+
+void DriveLoop::Supervise() {
+  state_.devices = ears_->devices();
+  supervisor_.Watch(state_.now, state_.devices);
+  state_.stop = supervisor_.stop();
+  state_.outages = supervisor_.outages();
+  state_.energy = energy_.level();
 }
 
 // What the pilot would do, for as long as that holds: a tick without a frame does not prolong it.
-std::optional<DriveCommand> DriveLoop::Advice(Time now) const {
-  if (!advice_ || energy_.level() == EnergyLevel::kEmpty) return std::nullopt;
-  DriveCommand command = advice_->command;
-  command.valid_for -= now - advised_;
+std::optional<DriveCommand> DriveLoop::Advice() const {
+  if (!state_.decision || state_.energy == EnergyLevel::kEmpty) return std::nullopt;
+  DriveCommand command = state_.decision->command;
+  command.valid_for -= state_.now - state_.decided;
   return command.valid_for > Duration(0) ? std::optional(command) : std::nullopt;
 }
 
-bool DriveLoop::TickByHand(const LoopObserver& observer, const Hand& hand) {
-  Listen(observer);
-  const Time now = robot_.clock->Now();
-  while (auto decision = Decide(observer, status_.arbitration.driver != Driver::kAutonomy))
-    advice_ = std::move(decision), advised_ = now;
-  status_.wish = hand(now);
-  status_.energy = energy_.level();
-  status_.arbitration = arbiter_.Decide(now, status_.wish, Advice(now), seen_ ? &*seen_ : nullptr);
-  status_.doing = status_.arbitration.driver == Driver::kAutonomy ? advice_->doing : "";
-  Send(status_.arbitration.command);
-  if (observer.hand) observer.hand(now, status_);
-  return status_.wish.quit;
+void DriveLoop::Arbitrate(const ManualInput& manual) {
+  state_.manual = manual ? manual(state_.now) : ManualCommand{.heard = state_.now, .autonomy = true};
+  state_.arbitration = arbiter_.Decide(state_.now, state_.manual, Advice(), state_.observation.get());
+}
+
+void DriveLoop::Act() {
+  Send(state_.arbitration.command);
+  if (robot_.turntable == nullptr || state_.decided != state_.now || !state_.decision->turntable_rad) return;
+  UseDevice("turntable", [this] { robot_.turntable->Send(*state_.decision->turntable_rad); });
 }
 
 void DriveLoop::AdaptExposure(const DepthFrame& frame) {
   const DepthCameraInfo& info = robot_.depth->Info();
   const DepthSettings adapted = Adapt(frame, info.sheet, info.rate_hz, integration_);
   if (adapted.integration_s != frame.settings.integration_s)
-    Ask("depth camera", [&] { robot_.depth->Configure(adapted); });
+    UseDevice("depth camera", [&] { robot_.depth->Configure(adapted); });
 }
 
-void DriveLoop::Send(const DriveCommand& command) {
-  Ask("drive", [&] { robot_.drive->Send(command); });
+// The stack means the angle of the wheels; the servo takes the angle that it will report. Nobody else converts.
+void DriveLoop::Send(DriveCommand command) {
+  command.steering_rad = ServoAngle_rad(car_, command.steering_rad);
+  UseDevice("drive", [&] { robot_.drive->Send(command); });
 }
 
 // Devices that throw now do not keep the others from being used.
-void DriveLoop::Stand(FirstFault& faults) {
+void DriveLoop::Halt(FirstFault& faults) {
   const Time begin = robot_.clock->Now();
   std::optional<DriveState> before;
-  while (robot_.clock->Now() - begin < kStandLimit) {
-    faults.Try([&] { Send({.speed_m_s = 0.0, .steering_rad = 0.0, .valid_for = kSilent}); });
+  while (robot_.clock->Now() - begin < kHaltLimit) {
+    faults.Try([&] { Send({.speed_m_s = 0.0, .steering_rad = 0.0, .valid_for = kHaltValid}); });
+    // A drive that has gone tells nothing more: its microcontroller brakes by itself.
+    if (robot_.drive->Status().health == DeviceStatus::Health::kAbsent) return;
     bool goes_on = false;
     faults.Try([&] { goes_on = robot_.clock->WaitUntil(robot_.clock->Now() + period_); });
     if (!goes_on) return;
     std::optional<DriveState> state;
     faults.Try([&] {
-      while (auto next = Poll("drive", robot_.drive)) state = next;
+      while (auto next = UseDevice("drive", [this] { return robot_.drive->Poll(); })) state = next;
     });
     if (state && before && state->encoder_counts == before->encoder_counts) return;
     if (state) before = state;
   }
 }
 
-LoopEnd DriveLoop::Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand) {
-  last_depth_ = last_drive_ = robot_.clock->Now();
+LoopEnd DriveLoop::Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const ManualInput& manual) {
+  ears_.emplace(robot_);
   for (Time tick = robot_.clock->Now() + period_; robot_.clock->WaitUntil(tick); tick += period_) {
-    const bool done = hand ? TickByHand(observer, hand) : Tick(observer);
-    if (observer.car_lost && observer.car_lost()) return LoopEnd::kCarLost;
-    if (done) return hand ? LoopEnd::kQuit : LoopEnd::kTaskDone;
+    Tick(manual);
+    if (observer && !observer(state_)) return LoopEnd::kEndedFromOutside;
+    if (state_.manual.quit) return LoopEnd::kQuit;
+    if (!manual && state_.decision && state_.decision->done) return LoopEnd::kTaskDone;
     if (stop.load()) return LoopEnd::kInterrupted;
-    if (!hand && energy_.level() == EnergyLevel::kEmpty) return LoopEnd::kBatteryEmpty;
-    if (robot_.clock->Now() - std::min(last_depth_, last_drive_) > kSilent + period_) return LoopEnd::kDeviceLost;
+    if (!manual && state_.energy == EnergyLevel::kEmpty) return LoopEnd::kBatteryEmpty;
+    if (!state_.stop.empty()) return LoopEnd::kDeviceLost;
   }
   return LoopEnd::kTimeUp;
 }
 
-LoopEnd DriveLoop::Run(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand) {
+LoopEnd DriveLoop::Run(const std::atomic<bool>& stop, const LoopObserver& observer, const ManualInput& manual) {
   FirstFault faults;
   LoopEnd end = LoopEnd::kTimeUp;
-  faults.Try([&] { end = Drive(stop, observer, hand); });
-  Stand(faults);
+  faults.Try([&] { end = Drive(stop, observer, manual); });
+  Halt(faults);
   if (faults.get()) std::rethrow_exception(faults.get());
   return end;
 }

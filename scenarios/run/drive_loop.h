@@ -1,74 +1,64 @@
-// The main loop, the same for the twin, a recording and the real car: wait for the tick, poll, perceive, locate, decide, drive.
+// The main loop, the same for the twin, a recording and the real car, with and without an operator: wait for the tick,
+// listen, perceive, locate, decide, supervise, arbitrate, drive.
 #pragma once
 
 #include <atomic>
 #include <functional>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "autonomy/arbitrate.h"
 #include "autonomy/energy.h"
 #include "autonomy/pilot.h"
+#include "autonomy/supervise.h"
 #include "perception/pipeline.h"
 #include "robot/base/first_fault.h"
 #include "robot/hal/hal.h"
+#include "scenarios/run/hear.h"
+#include "scenarios/run/loop_state.h"
 #include "slam/slam.h"
 
 namespace merlin {
 
-enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost, kBatteryEmpty, kQuit, kCarLost };
+enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost, kBatteryEmpty, kQuit, kEndedFromOutside };
 
-// An operator's hand, asked at every tick.
-using Hand = std::function<ManualWish(Time now)>;
+// What an operator wants, asked at every tick.
+using ManualInput = std::function<ManualCommand(Time now)>;
 
-// What an operator wants to know.
-struct HandStatus {
-  Arbitration arbitration;
-  ManualWish wish;
-  double speed_m_s = 0.0;  // by the encoder
-  DriveState state;        // the last one
-  EnergyLevel energy = EnergyLevel::kEnough;
-  std::string doing;  // the pilot, if it drives
-};
-
-// What a run may look at from outside, each called in the loop's thread. Any may be empty.
-struct LoopObserver {
-  std::function<void(const DepthFrame&)> depth;
-  std::function<void(const ColorFrame&)> color;
-  std::function<void(Time now, const Decision&)> tick;      // after every decision
-  std::function<void(Time now, const HandStatus&)> hand{};  // at every tick that has a hand
-  std::function<bool()> car_lost{};  // asked at every tick: true ends the run (the truth knows, see car_watch.h)
-};
+// Called after every tick, in the loop's thread. False ends the run: somebody outside knows that the car is lost.
+using LoopObserver = std::function<bool(const LoopState&)>;
 
 class DriveLoop {
  public:
   DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception, const SlamConfig& slam,
             const Task& task, const PilotConfig& pilot);
 
-  // Until the task is done, the clock ends, stop is set, the battery is empty (autonomy/energy.h), the depth camera or
-  // the drive is silent for a second, or the observer says that the car is lost. Then brakes, and waits until the car
-  // stands, as far as the clock permits. The same where something throws: the first exception leaves this function once
-  // the car stands. What a device throws, of whatever type, leaves it as a DeviceError that names the device.
-  // With a hand the pilot only advises the arbiter (autonomy/arbitrate.h), its task has no end, and an empty battery
-  // stops the pilot alone: the operator may bring the car home.
-  LoopEnd Run(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand = {});
+  // Until the task is done, the clock ends, stop is set, the battery is empty (autonomy/energy.h), a device without which
+  // the car must not drive has failed (autonomy/supervise.h), or the observer ends it. Then brakes, and waits until the
+  // car stands, as far as the clock permits. The same where something throws: the first exception leaves this function
+  // once the car stands. What a device throws, of whatever type, leaves it as a DeviceError that names the device.
+  // With an operator the pilot only advises the arbiter (autonomy/arbitrate.h), its task has no end, and an empty
+  // battery stops the pilot alone: the operator may bring the car home.
+  LoopEnd Run(const std::atomic<bool>& stop, const LoopObserver& observer, const ManualInput& manual = {});
 
+  const LoopState& state() const { return state_; }  // of the last tick
   const Slam& slam() const { return slam_; }
   const Energy& energy() const { return energy_; }
-  const char* silent_device() const { return last_depth_ < last_drive_ ? "depth camera" : "drive"; }  // of kDeviceLost
   const std::vector<double>& stack_ms() const { return stack_ms_; }  // one a depth frame: filter to decision
 
  private:
-  void Listen(const LoopObserver& observer);
-  // On the next depth frame, if there is one.
-  std::optional<Decision> Decide(const LoopObserver& observer, bool forget);
-  bool Tick(const LoopObserver& observer);                          // true: the task is done
-  bool TickByHand(const LoopObserver& observer, const Hand& hand);  // true: the operator quits
-  std::optional<DriveCommand> Advice(Time now) const;
-  LoopEnd Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const Hand& hand);
-  void Send(const DriveCommand& command);
-  void Stand(FirstFault& faults);
+  LoopEnd Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const ManualInput& manual);
+  void Tick(const ManualInput& manual);
+  void Listen();
+  void Follow(const DriveState& state);
+  void Decide(const DepthFrame& frame);
+  void Supervise();
+  void Arbitrate(const ManualInput& manual);
+  void Act();
+  std::optional<DriveCommand> Advice() const;
   void AdaptExposure(const DepthFrame& frame);
+  void Send(DriveCommand command);
+  void Halt(FirstFault& faults);
 
   Robot robot_;
   IntegrationConfig integration_;
@@ -78,12 +68,10 @@ class DriveLoop {
   Pilot pilot_;
   Energy energy_;
   Arbiter arbiter_;
-  std::optional<Observation> seen_;  // the newest
-  std::optional<Decision> advice_;   // the pilot's newest, ...
-  Time advised_{0};                  // ... and when it came
-  HandStatus status_;
-  double metres_per_count_;
-  Time last_depth_{0}, last_drive_{0};
+  Supervisor supervisor_;
+  std::optional<Ears> ears_;  // since Run began
+  LoopState state_;
+  CarDescription car_;
   std::vector<double> stack_ms_;
 };
 

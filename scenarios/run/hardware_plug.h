@@ -15,7 +15,8 @@ void RequireReady(HardwareRobot& robot);
 // Throws InputError for a task that needs a turntable: a car on the floor has none.
 void RequireNoTurntable(const Scenario& scenario);
 
-// Opens options.hardware_file's devices and waits until all of them deliver.
+// Opens options.hardware_file's devices, waits until all of them deliver, and checks that the car is fit to drive
+// (scenarios/run/preflight.h). Throws InputError or MachineError, a line for each fault; nothing has moved then.
 std::unique_ptr<Plug> MakeHardwarePlug(const RunOptions& options);
 
 }  // namespace merlin

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
-#include <string>
 #include <thread>
 
 #include "scenarios/run/run.h"
@@ -30,15 +29,15 @@ void Tell(const Progress& progress) {
 class Pacer {
  public:
   Pacer(const RunOptions& options, const std::atomic<bool>& stop) : options_(options), stop_(stop) {}
-  void Tick(Time now, double distance_m, const std::string& doing) {
+  void Tick(const LoopState& state) {
     while (options_.pace > 0.0 && !stop_.load()) {
-      const double ahead_s = Seconds(now) / options_.pace - SecondsSince(begin_);
+      const double ahead_s = Seconds(state.now) / options_.pace - SecondsSince(begin_);
       if (ahead_s <= 0.0) break;
       std::this_thread::sleep_for(std::chrono::duration<double>(std::min(ahead_s, 0.05)));  // Ctrl-C must not wait
     }
     if (!options_.progress || SecondsSince(reported_) < 0.2) return;
     reported_ = WallClock::now();
-    Tell([&] { options_.progress(now, distance_m, doing); });
+    Tell([&] { options_.progress(state); });
   }
 
  private:

@@ -86,7 +86,9 @@ class Session {
     faults_.Try([&] { folder_.Finish(ToJson(report.result)); });
     Conclude(ending, report);
     report.gl_name = plug_.renderer();
-    report.note = Joined(plug_.notes());
+    std::vector<std::string> notes = plug_.notes();
+    for (const Outage& outage : loop_.state().outages) notes.push_back(outage.Sentence());
+    report.note = Joined(notes);
     return report;
   }
 
@@ -95,18 +97,15 @@ class Session {
     const WallClock::time_point begin = WallClock::now();
     const Time first = robot_.clock->Now();
     Pacer pacer(options_, stop_);
-    const LoopObserver observer{
-        .depth = [&](const DepthFrame& frame) { frames_.Add(frame), plug_.Keep(frame.stamp); },
-        .color = [&](const ColorFrame& frame) { frames_.Add(frame); },
-        .tick = [&](Time now, const Decision& decision) { pacer.Tick(now, loop_.slam().path_m(), decision.doing); },
-        .hand =
-            [&](Time now, const HandStatus& status) {
-              if (options_.hand_status) Tell([&] { options_.hand_status(now, status); });
-              pacer.Tick(now, loop_.slam().path_m(), Name(status.arbitration.driver));
-            },
-        .car_lost = [&] { return !plug_.ReasonToEnd().empty(); }};
+    const LoopObserver observer = [&](const LoopState& state) {
+      for (const auto& frame : state.heard.depth) frames_.Add(*frame), plug_.Keep(frame->stamp);
+      for (const auto& frame : state.heard.color) frames_.Add(*frame);
+      if (options_.station) Tell([&] { options_.station(state); });
+      pacer.Tick(state);
+      return plug_.ReasonToEnd().empty();
+    };
     Ending ending;
-    faults_.Try([&] { ending.end = loop_.Run(stop_, observer, options_.hand); });
+    faults_.Try([&] { ending.end = loop_.Run(stop_, observer, options_.manual); });
     figures_.wall_time_s = SecondsSince(begin);
     figures_.sim_time_s = Seconds(robot_.clock->Now() - first);
     figures_.real_time_factor = *figures_.sim_time_s / *figures_.wall_time_s;
@@ -120,8 +119,7 @@ class Session {
   std::string Reason(LoopEnd end) const {
     if (end == LoopEnd::kDeviceLost) {
       const std::string complaints = Joined(plug_.Complaints());
-      return fmt::format("the {} fell silent for a second{}", loop_.silent_device(),
-                         complaints.empty() ? "" : " (" + complaints + ")");
+      return loop_.state().stop + (complaints.empty() ? "" : " (" + complaints + ")");
     }
     if (end == LoopEnd::kBatteryEmpty)
       return fmt::format("the battery is empty: {:.2f} V without the motor, and the car stops below {:.2f} V",
@@ -148,7 +146,7 @@ class Session {
       if (robot_.color != nullptr) result.hashes.color = frames_.color.Hex();
     }
     result.metrics = WithOwnFigures(measured.metrics);
-    result.checks = Evaluate(options_.scenario.checks, result.metrics, options_.name);
+    result.checks = Evaluate(options_.scenario.checks, result.metrics, plug_.traits().knows_truth, options_.name);
     return result;
   }
 
@@ -165,6 +163,7 @@ class Session {
           static_cast<std::int64_t>(robot_.depth->Status().missed + (robot_.color ? robot_.color->Status().missed : 0));
     });
     metrics.peak_rss_mb = PeakRss_mb();
+    if (!plug_.traits().knows_truth) metrics.stack_rss_mb = metrics.peak_rss_mb;  // no simulation in this process
     return metrics;
   }
 
@@ -194,8 +193,8 @@ class Session {
 
 RunReport RunScenario(const RunOptions& asked, const PlugMaker& make_plug, const std::atomic<bool>& stop) {
   const WallClock::time_point begin = WallClock::now();
-  if (IsOnStand(asked.scenario.task) && asked.hand)
-    throw InputError("task.behavior", "turn_on_stand: nobody drives on the stand", "merlin run");
+  if (IsOnTurntable(asked.scenario.task) && asked.manual)
+    throw InputError("task.behavior", asked.scenario.task.behavior + ": nobody drives on the turntable", "merlin run");
   RunOptions options = asked;
   std::vector<std::string> warnings;
   const CarDescription car = BelievedCar(options.scenario.car);
@@ -203,6 +202,7 @@ RunReport RunScenario(const RunOptions& asked, const PlugMaker& make_plug, const
   const std::unique_ptr<Plug> plug = make_plug(options);
   RunReport report = Session(options, *plug, car, SecondsSince(begin), stop).Run();
   warnings.insert(warnings.begin(), car.warnings.begin(), car.warnings.end());
+  warnings.insert(warnings.begin(), options.scenario.warnings.begin(), options.scenario.warnings.end());
   for (const std::string& warning : warnings) report.note += (report.note.empty() ? "" : "; ") + warning;
   return report;
 }

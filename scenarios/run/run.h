@@ -24,13 +24,13 @@ struct RunOptions {
   Scenario scenario;
   std::filesystem::path out;
   RobotKind robot = RobotKind::kTwin;
-  std::filesystem::path hardware_file{};  // of kHardware
-  Gl gl = Gl::kAuto;                      // of the twin; kOff: depth only
-  int threads = 0;                        // of the twin: TwinOptions::threads; 0: the twin chooses
-  double pace = 0.0;                      // simulated over wall time not to be exceeded; 0: as fast as it goes
-  std::function<void(Time now, double distance_m, const std::string& doing)> progress;  // a few times a second
-  Hand hand{};                                                     // of an operator who drives; empty: the pilot does
-  std::function<void(Time now, const HandStatus&)> hand_status{};  // at every tick that has a hand
+  std::filesystem::path hardware_file{};           // of kHardware
+  Gl gl = Gl::kAuto;                               // of the twin; kOff: depth only
+  int threads = 0;                                 // of the twin: TwinOptions::threads; 0: the twin chooses
+  double pace = 0.0;                               // simulated over wall time not to be exceeded; 0: as fast as it goes
+  std::function<void(const LoopState&)> progress;  // a few times a second
+  ManualInput manual{};                            // of an operator; empty: the pilot drives
+  std::function<void(const LoopState&)> station{};  // at every tick: what an operator wants to know
 };
 
 struct RunReport {

@@ -14,15 +14,12 @@
 
 namespace merlin {
 
-// Boxes of a scenario, as the world holds them.
-std::vector<sim::Obstacle> ObstaclesOf(const Scenario& scenario);
-
 class Truth {
  public:
   Truth(const Scenario& scenario, const sim::World& world);
 
-  // After every step: places and removes obstacles, counts contacts, hashes the state, watches over the car.
-  void Watch(sim::World& world);
+  // After every step: counts contacts, hashes the state, watches over the car.
+  void Watch(const sim::World& world);
   // Keeps the true pose at a stamp of the last second, between two steps if need be.
   void Keep(Time stamp);
 
@@ -32,15 +29,13 @@ class Truth {
   const std::string& car_lost() const { return car_.lost(); }
   std::string state_hash() const { return state_.Hex(); }
   std::optional<double> obstacle_gap_m() const { return obstacle_gap_m_; }
-  // Longest time in a row that the car stood while an obstacle was there; empty without obstacles.
+  // Of actors, too. Longest time in a row that the car stood while one was there; empty without any.
   std::optional<double> obstacle_stop_s() const { return obstacle_stop_s_; }
 
  private:
-  void WatchObstacles(sim::World& world);
+  void WatchActors(const sim::World& world);
 
   CarWatch car_;
-  std::vector<ObstacleEvent> events_;
-  std::vector<bool> placed_;
   std::deque<StampedPose> recent_;
   Trajectory trajectory_;
   Sha256 state_;

@@ -10,7 +10,6 @@
 #include "robot/description/description.h"
 #include "scenarios/config/hardware_file.h"
 #include "scenarios/config/names.h"
-#include "scenarios/run/truth.h"
 
 namespace merlin {
 namespace {
@@ -21,10 +20,29 @@ void RequireRate(const char* field, double rate_hz, double max_hz) {
                      fmt::format("{:g} Hz", rate_hz));
 }
 
-void RequireMaterial(const std::string& name, const sim::Materials& materials) {
-  if (materials.by_name.contains(name)) return;
-  throw InputError("obstacles", fmt::format("unknown material '{}'; did you mean '{}'?", name,
-                                            NearestName(name, std::views::keys(materials.by_name))));
+void RequireMaterial(const std::string& where, const std::string& name, const sim::Materials& materials) {
+  if (name.empty() || materials.by_name.contains(name)) return;
+  throw InputError((where.empty() ? "" : where + ": ") +
+                   fmt::format("unknown material '{}'; did you mean '{}'?", name,
+                               NearestName(name, std::views::keys(materials.by_name))));
+}
+
+// With the files that their models are, and materials that are known.
+void AddActors(const Scenario& scenario, const sim::Materials& materials, sim::WorldOptions& world) {
+  sim::RefuseFaults(scenario.actors);
+  world.obstacles = scenario.obstacles;
+  world.actors = scenario.actors;
+  for (const sim::ObstacleConfig& obstacle : world.obstacles)
+    RequireMaterial(obstacle.where, obstacle.material, materials);
+  for (sim::ActorConfig& actor : world.actors) {
+    RequireMaterial(actor.where, actor.material, materials);
+    if (actor.model.empty()) continue;
+    try {
+      actor.model = ActorFile(actor.model).string();
+    } catch (const InputError& error) {
+      throw InputError(actor.where + ": " + error.what());
+    }
+  }
 }
 
 }  // namespace
@@ -34,7 +52,7 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   TwinOptions twin;
   const CarStart& start = scenario.car.start;
   twin.world = {RoomFile(scenario.room), ReadCar(CarFile(scenario.car.model)),
-                FromXyYaw(start.x_m, start.y_m, start.yaw_rad), ObstaclesOf(scenario), scenario.curtain == "closed"};
+                FromXyYaw(start.x_m, start.y_m, start.yaw_rad), scenario.curtain == "closed"};
   twin.materials = sim::ReadMaterials(Home() / "models/materials.yaml");
   twin.world.drivetrain = scenario.car.drivetrain;
   if (scenario.car.pan) {
@@ -42,7 +60,8 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
       throw InputError("car.pan", "the car '" + scenario.car.model + "' has no joint that turns its cameras");
     twin.world.car.pan->moves = true;
   }
-  if (IsOnStand(scenario.task)) twin.world.stand_rate_rad_s = scenario.task.rate_deg_s * std::numbers::pi / 180.0;
+  if (IsOnTurntable(scenario.task))
+    twin.world.turntable_rate_rad_s = scenario.task.rate_deg_s * std::numbers::pi / 180.0;
   twin.seed = scenario.seed;
   const std::filesystem::path depth_file = DepthCameraFile(sensors.depth.camera);
   twin.depth = {ReadDepthCameraSheet(depth_file), ReadDepthCameraErrors(depth_file), SettingsOf(sensors.depth),
@@ -50,7 +69,7 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
   RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, twin.depth.sheet.rate_max_hz);
   RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz,
               1.0 / twin.depth.sheet.ExposureSpan_s(twin.depth.settings));
-  for (const ObstacleEvent& event : scenario.obstacles) RequireMaterial(event.material, twin.materials);
+  AddActors(scenario, twin.materials, twin.world);
   twin.depth.sheet.latency_s = sensors.depth.latency_s.value_or(twin.depth.sheet.latency_s);
   if (sensors.color && twin.world.car.T_base_color) {
     twin.color.emplace(ReadColorCameraSheet(ColorCameraFile(sensors.color->camera)), sensors.color->rate_hz,

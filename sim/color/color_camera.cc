@@ -38,20 +38,24 @@ ColorCamera::ColorCamera(const mjModel* model, const ColorCameraSheet& sheet, Gl
       motion_blur_(motion_blur),
       pinhole_bgr_(3 * static_cast<std::size_t>(lens_.pinhole().width) * lens_.pinhole().height) {}
 
-std::shared_ptr<ColorShot> ColorCamera::Take(const mjModel* model, const mjData* data, const BodyMotion& camera) const {
+std::shared_ptr<ColorShot> ColorCamera::Take(const mjModel* model, const mjData* data, const BodyMotion& camera,
+                                             const BodyMotions& bodies) const {
   auto shot = std::make_shared<ColorShot>(model);
   shot->camera = camera;
   const double away_s = motion_blur_ ? 0.5 * sheet_.exposure_max_s : 0.0;
   const Sway sway{away_s * camera.velocity_m_s.norm(), away_s * camera.angular_velocity_rad_s.norm()};
-  shot->scene.Take(model, data, camera.T_world_body, lens_.pinhole(), sway);
+  shot->scene.Take(model, data, camera.T_world_body, lens_.pinhole(), sway, away_s, bodies);
+  if (motion_blur_) shot->moving = shot->scene.MovingGeoms(model, bodies);
   return shot;
 }
 
 void ColorCamera::Draw(ColorShot& shot, double exposure_s) {
-  if (!motion_blur_ || shot.camera.still()) return renderer_.Draw(shot.scene, pinhole_bgr_);
+  if (!motion_blur_ || (shot.camera.still() && shot.moving.empty())) return renderer_.Draw(shot.scene, pinhole_bgr_);
   Exposure exposure(pinhole_bgr_.size());
   for (int i = 0; i < kBlurPictures; ++i) {
-    shot.scene.Look(shot.camera.At(((i + 0.5) / kBlurPictures - 0.5) * exposure_s), lens_.pinhole());
+    const double dt_s = ((i + 0.5) / kBlurPictures - 0.5) * exposure_s;
+    shot.scene.Look(shot.camera.At(dt_s), lens_.pinhole());
+    shot.scene.Move(shot.moving, dt_s);
     renderer_.Draw(shot.scene, pinhole_bgr_);
     exposure.Add(pinhole_bgr_);
   }

@@ -1,4 +1,4 @@
-// What becomes of light on a colour sensor: electrons, noise, gain, 8 bit. Model: EMVA Standard 1288, release 3.1
+// How a colour sensor turns light into a picture: electrons, noise, gain, 8 bit. Model: EMVA Standard 1288, release 3.1
 // (linear pixel, shot noise, one read noise), with natural vignetting before it.
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace merlin::sim {
 
-// A rendered 8-bit value is taken as sRGB (IEC 61966-2-1): this is its linear light, white 1. A camera codes its own
-// pictures the same way, so that a nominally exposed one looks as rendered.
+// A rendered 8-bit value is taken as sRGB (IEC 61966-2-1): this is its linear light, white 1. A camera encodes its own
+// pictures as sRGB too, so that a nominally exposed one looks as rendered.
 double LinearOfSrgb(double value);  // value 0 to 255
 double SrgbOfLinear(double light);  // light 0 to 1, not rounded
 
@@ -39,7 +39,7 @@ class ColorResponse {
 };
 
 // The automatic exposure: from the settings a picture was taken with and the picture, those of the next one. The mean
-// linear light goes half the way (in stops) to 0.18, a grey card, unless it is within a quarter stop; exposure time
+// linear light moves half the distance (in stops) to 0.18, a grey card, unless it is within a quarter stop; exposure time
 // first, then gain.
 ColorSettings NextExposure(const ColorCameraSheet& sheet, const ColorSettings& settings,
                            std::span<const std::uint8_t> bgr);

@@ -23,7 +23,7 @@ class GlContext {
   void* Get(const char* function) const { return get_(function); }
 
   // Holds the context current in the calling thread, for as long as it lives: a context is current in one thread at a
-  // time, so whoever draws next may sit in another.
+  // time, and the next to draw may be another thread.
   class Current {
    public:
     explicit Current(const GlContext& context) : context_(context) { context_.make_current_(); }

@@ -1,4 +1,4 @@
-// A distorting lens before a renderer that knows pinholes only: the picture is drawn larger and drawn over once.
+// A distorting lens. The renderer knows pinholes only, so a larger pinhole picture is drawn and then resampled once.
 #pragma once
 
 #include <cstdint>

@@ -58,7 +58,7 @@ mjvOption OnlyGeoms() {
 
 // Leaves out what cannot be in the picture: a corridor has hundreds of geoms and a camera sees a few dozen.
 void DropUnseen(const mjModel* model, const Pose& T_world_camera, const CameraModel& camera, const Sway& sway,
-                mjvScene& scene) {
+                double away_s, const BodyMotions& bodies, mjvScene& scene) {
   const Slopes edges = EdgesOf(camera);
   const std::array<Eigen::Vector3d, 5> inward{
       Eigen::Vector3d(1, 0, -edges.left).normalized(), Eigen::Vector3d(-1, 0, edges.right).normalized(),
@@ -70,7 +70,12 @@ void DropUnseen(const mjModel* model, const Pose& T_world_camera, const CameraMo
     const double radius_m = model->geom_rbound[geom.objid];
     if (radius_m <= 0.0) return false;  // a plane
     const Eigen::Vector3d centre = T_camera_world * Eigen::Vector3d(geom.pos[0], geom.pos[1], geom.pos[2]);
-    const double sway_m = sway.shift_m + sway.turn_rad * (centre.norm() + radius_m);
+    double sway_m = sway.shift_m + sway.turn_rad * (centre.norm() + radius_m);
+    if (!bodies.empty()) {
+      const BodyMotion& body = bodies[static_cast<std::size_t>(model->geom_bodyid[geom.objid])];
+      const Eigen::Vector3d arm = T_world_camera * centre - body.T_world_body.translation();
+      sway_m += away_s * (body.velocity_m_s.norm() + body.angular_velocity_rad_s.norm() * (arm.norm() + radius_m));
+    }
     return std::any_of(inward.begin(), inward.end(),
                        [&](const Eigen::Vector3d& n) { return n.dot(centre) < -radius_m - sway_m - 1e-3; });
   };
@@ -99,7 +104,7 @@ RenderSnapshot::RenderSnapshot(const mjModel* model) {
 RenderSnapshot::~RenderSnapshot() { mjv_freeScene(&scene); }
 
 void RenderSnapshot::Take(const mjModel* model, const mjData* data, const Pose& T_world_camera,
-                          const CameraModel& camera, const Sway& sway) {
+                          const CameraModel& camera, const Sway& sway, double away_s, const BodyMotions& bodies) {
   Look(T_world_camera, camera);
   mjvCamera as_set;
   mjv_defaultCamera(&as_set);
@@ -107,8 +112,32 @@ void RenderSnapshot::Take(const mjModel* model, const mjData* data, const Pose& 
   const mjvOption option = OnlyGeoms();
   // MuJoCo asks for a writable mjData for its scratch stack; the state stays as it is.
   mjv_updateScene(model, const_cast<mjData*>(data), &option, nullptr, &as_set, mjCAT_STATIC | mjCAT_DYNAMIC, &scene);
-  DropUnseen(model, T_world_camera, camera, sway, scene);
+  DropUnseen(model, T_world_camera, camera, sway, away_s, bodies, scene);
   NearAndSmallFirst(model, T_world_camera.translation(), scene);
+}
+
+std::vector<MovingGeom> RenderSnapshot::MovingGeoms(const mjModel* model, const BodyMotions& bodies) const {
+  std::vector<MovingGeom> moving;
+  for (int i = 0; i < scene.ngeom && !bodies.empty(); ++i) {
+    const mjvGeom& geom = scene.geoms[i];
+    if (geom.objtype != mjOBJ_GEOM || geom.objid < 0) continue;
+    const BodyMotion& body = bodies[static_cast<std::size_t>(model->geom_bodyid[geom.objid])];
+    if (body.still()) continue;
+    Pose T_world_geom = Pose::Identity();
+    T_world_geom.translation() = Eigen::Vector3f::Map(geom.pos).cast<double>();
+    T_world_geom.linear() = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>::Map(geom.mat).cast<double>();
+    moving.push_back({i, body.Of(body.T_world_body.inverse() * T_world_geom)});
+  }
+  return moving;
+}
+
+void RenderSnapshot::Move(const std::vector<MovingGeom>& geoms, double dt_s) {
+  for (const MovingGeom& moving : geoms) {
+    mjvGeom& geom = scene.geoms[moving.index];
+    const Pose T_world_geom = moving.motion.At(dt_s);
+    Eigen::Vector3f::Map(geom.pos) = T_world_geom.translation().cast<float>();
+    Eigen::Matrix<float, 3, 3, Eigen::RowMajor>::Map(geom.mat) = T_world_geom.linear().cast<float>();
+  }
 }
 
 void RenderSnapshot::Look(const Pose& T_world_camera, const CameraModel& camera) {

@@ -8,19 +8,27 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "robot/types/camera_model.h"
 #include "robot/types/gl.h"
 #include "robot/types/se3.h"
+#include "sim/world/motion.h"
 
 namespace merlin::sim {
 
 using merlin::Gl;
 
-// How far a camera may get from where it is while it exposes.
+// How far a camera may move while it exposes.
 struct Sway {
   double shift_m = 0.0;
   double turn_rad = 0.0;
+};
+
+// A geom of a snapshot whose body moves.
+struct MovingGeom {
+  int index;          // in the snapshot's scene
+  BodyMotion motion;  // of the geom's frame, at the middle of the exposure
 };
 
 // What MuJoCo needs to draw, taken at exposure: the picture may be drawn later, beside the physics.
@@ -30,10 +38,15 @@ class RenderSnapshot {
   ~RenderSnapshot();
   RenderSnapshot(const RenderSnapshot&) = delete;
   RenderSnapshot& operator=(const RenderSnapshot&) = delete;
-  // Camera: optical frame, its pinhole part only (no distortion). Keeps what can be in that camera's picture.
+  // Camera: optical frame, its pinhole part only (no distortion). Keeps what can be in that camera's picture within
+  // away_s of now, if bodies move so (empty: they do not).
   void Take(const mjModel* model, const mjData* data, const Pose& T_world_camera, const CameraModel& camera,
-            const Sway& sway = {});
-  // The same world from another place, no farther than the sway.
+            const Sway& sway = {}, double away_s = 0.0, const BodyMotions& bodies = {});
+  // Of what was kept; bodies as Take had them.
+  std::vector<MovingGeom> MovingGeoms(const mjModel* model, const BodyMotions& bodies) const;
+  // To where they are dt_s later than the snapshot.
+  void Move(const std::vector<MovingGeom>& geoms, double dt_s);
+  // The same world from another pose, no farther than the sway.
   void Look(const Pose& T_world_camera, const CameraModel& camera);
   mjvScene scene;
 };

@@ -1,7 +1,7 @@
-// The car's battery: what its voltage is under load, and how long it lasts.
+// The car's battery: its voltage under load, and how long it lasts.
 #pragma once
 
-#include "sim/drive/drivetrain_config.h"
+#include "robot/types/drivetrain_config.h"
 
 namespace merlin::sim {
 
@@ -28,7 +28,7 @@ class Battery {
   // The charge that this takes, or brings back, in a time.
   void Feed(const MotorLoad& motor, double duration_s);
 
-  // Nothing left, and nothing given any more: to the electronics neither.
+  // Nothing is left: neither the motor nor the electronics get anything any more.
   bool empty() const { return !config_.always_nominal && charge_as_ <= 0.0; }
   double charge() const { return charge_as_ / capacity_as_; }  // share of the capacity
 

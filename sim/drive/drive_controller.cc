@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "robot/kinematics/ackermann.h"
+#include "robot/kinematics/limits.h"
+#include "robot/kinematics/motion.h"
 #include "sim/drive/drivetrain.h"
 
 namespace merlin::sim {
@@ -31,14 +33,6 @@ double ShaftInertia_kg_m2(const CarDescription& car) {
   const double gear2 = car.drivetrain.gear * car.drivetrain.gear;
   return car.drivetrain.rotor_inertia_kg_m2 +
          (mass_kg * car.wheel_radius_m * car.wheel_radius_m + wheels_kg_m2) / gear2;
-}
-
-// In a turn the front wheels run on larger circles than the rear axle's middle: the mean path of the four wheels over
-// its.
-double WheelMeanRatio(const CarDescription& car, double steering_rad) {
-  const double tangent = std::tan(steering_rad);
-  const double lateral = 0.5 * car.track_m / car.wheelbase_m * tangent;
-  return 0.5 + 0.25 * (std::hypot(1.0 - lateral, tangent) + std::hypot(1.0 + lateral, tangent));
 }
 
 double Toward(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }
@@ -68,9 +62,7 @@ void DriveController::Send(const DriveCommand& command, Time now) {
     expires_ = now;
     return;
   }
-  command_ = command;
-  command_.speed_m_s = std::clamp(command.speed_m_s, -car_.drivetrain.speed_max_m_s, car_.drivetrain.speed_max_m_s);
-  command_.steering_rad = std::clamp(command.steering_rad, -car_.steering_max_rad, car_.steering_max_rad);
+  command_ = ClampCommand(car_, command);
   expires_ = command.valid_for > Time::max() - now ? Time::max() : now + std::max(command.valid_for, Duration(0));
 }
 
@@ -79,8 +71,7 @@ double DriveController::MeasuredSpeed_rad_s(const mjData* data, double period_s)
   const std::int64_t counted = encoder_.counts() - loop_counts_;
   loop_counts_ = encoder_.counts();
   still_s_ = counted == 0 ? still_s_ + period_s : 0.0;
-  return 2.0 * std::numbers::pi * static_cast<double>(counted) /
-         (car_.drivetrain.encoder_counts_per_motor_turn * period_s);
+  return ShaftSpeed_rad_s(car_.drivetrain, counted, period_s);
 }
 
 // One turn of the speed loop: the bridge's duty until the next.
@@ -93,7 +84,7 @@ void DriveController::Regulate(const mjData* data, Time now, double period_s) {
 
   // From the rear axle's middle to the motor shaft, which turns with the mean of the four wheels.
   const double steering_rad = servo_.Report_rad(data->qpos[steering_qpos_]);
-  const double shaft_rad_m = d.gear * WheelMeanRatio(car_, steering_rad) / car_.wheel_radius_m;
+  const double shaft_rad_m = ShaftTurnPerMetre_rad_m(car_, steering_rad);
   const double target_rad_s = speed_setpoint_m_s_ * shaft_rad_m;
   const double error_rad_s = target_rad_s - MeasuredSpeed_rad_s(data, period_s);
   // V = K w + R/K (torque): the speed's back-EMF, the set point's acceleration, and PI on the error.

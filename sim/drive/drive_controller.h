@@ -1,5 +1,5 @@
 // The on-board electronics of the drive: battery, H-bridge, microcontroller with its speed loop, encoder and servo. They
-// turn a DriveCommand into volts and a steering set point, and report.
+// turn a DriveCommand into a motor voltage and a steering set point, and report the drive's state.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "robot/types/car.h"
+#include "robot/types/drivetrain_config.h"
 #include "robot/types/measurements.h"
 #include "sim/drive/battery.h"
-#include "sim/drive/drivetrain_config.h"
 #include "sim/drive/encoder.h"
 #include "sim/drive/steering_servo.h"
 
@@ -29,8 +29,8 @@ class DriveController {
   void Apply(const mjModel* model, mjData* data, Time now);
   // Once after every step, of which data is the end: the encoder counts.
   void Follow(const mjModel* model, const mjData* data);
-  // Encoder (whole counts of the motor shaft), steering, the motor's current, the battery's terminal voltage, as they
-  // stand now.
+  // Encoder (whole counts of the motor shaft), steering, the motor's current, the battery's terminal voltage, all
+  // of this instant.
   DriveState Read(const mjModel* model, const mjData* data, Time now) const;
 
   const Battery& battery() const { return battery_; }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "robot/kinematics/ackermann.h"
 #include "sim/world/spec.h"
 
 namespace merlin::sim::drivetrain {
@@ -23,27 +24,20 @@ void CheckSpec(const char* error) {
   if (error != nullptr && *error != '\0') throw std::logic_error(std::string("MuJoCo refuses an actuator: ") + error);
 }
 
-// Ackermann: both front wheels aim at the centre of the circle of the virtual middle one, on the rear axle's line.
-// side is +1 for the left wheel.
-double WheelAngle_rad(const CarDescription& car, double middle_rad, double side) {
-  const double tangent = std::tan(middle_rad);
-  return std::atan2(car.wheelbase_m * tangent, car.wheelbase_m - side * 0.5 * car.steering_track_m * tangent);
-}
-
-// The quartic through 0 that fits WheelAngle best over the steering range; MuJoCo's joint equality takes no other law.
-Eigen::Vector4d AckermannPolynomial(const CarDescription& car, double side) {
+// The quartic through 0 that fits FrontWheelAngle_rad best over the steering range; MuJoCo's joint equality takes no other law.
+Eigen::Vector4d AckermannPolynomial(const CarDescription& car, Side side) {
   constexpr int kSamples = 101;
   Eigen::Matrix<double, kSamples, 4> powers;
   Eigen::Matrix<double, kSamples, 1> angles;
   for (int i = 0; i < kSamples; ++i) {
     const double middle_rad = car.steering_max_rad * (2.0 * i / (kSamples - 1) - 1.0);
     powers.row(i) << middle_rad, std::pow(middle_rad, 2), std::pow(middle_rad, 3), std::pow(middle_rad, 4);
-    angles[i] = WheelAngle_rad(car, middle_rad, side);
+    angles[i] = FrontWheelAngle_rad(car, middle_rad, side);
   }
   return powers.colPivHouseholderQr().solve(angles);
 }
 
-void AddLinkage(mjSpec* spec, const CarDescription& car, const mjsDefault* plain, std::size_t knuckle, double side) {
+void AddLinkage(mjSpec* spec, const CarDescription& car, const mjsDefault* plain, std::size_t knuckle, Side side) {
   mjsEquality* equality = mjs_addEquality(spec, plain);
   equality->type = mjEQ_JOINT;
   mjs_setString(equality->name1, car.links[knuckle].joint_name.c_str());
@@ -108,8 +102,8 @@ void AddTo(mjSpec* spec, const CarDescription& car) {
   const BuiltinDefaults plain;
   AddMotor(spec, car, plain.get());
   AddServo(spec, car, plain.get());
-  AddLinkage(spec, car, plain.get(), car.knuckles[0], +1.0);
-  AddLinkage(spec, car, plain.get(), car.knuckles[1], -1.0);
+  AddLinkage(spec, car, plain.get(), car.knuckles[0], Side::kLeft);
+  AddLinkage(spec, car, plain.get(), car.knuckles[1], Side::kRight);
 }
 
 }  // namespace merlin::sim::drivetrain

@@ -1,5 +1,5 @@
-// The car's motor and steering as the twin has them: MuJoCo's dcmotor on a differential tendon, and a steering servo with
-// slew. What feeds them is sim/drive/drive_controller.h.
+// The car's motor and steering in MuJoCo: MuJoCo's dcmotor on a differential tendon, and a steering servo with
+// slew. sim/drive/drive_controller.h gives them their set points.
 #pragma once
 
 #include <mujoco/mujoco.h>

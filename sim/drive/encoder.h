@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "sim/drive/drivetrain_config.h"
+#include "robot/types/drivetrain_config.h"
 
 namespace merlin::sim {
 
@@ -13,7 +13,8 @@ class Encoder {
   Encoder(const DrivetrainConfig& config, int counts_per_turn, double rotor_inertia_kg_m2, std::uint64_t seed);
 
   // Follows the shaft over one step. wheels_rad: how far the wheels have turned since the start, their mean, times the
-  // gear. torque_n_m: the motor's; it moves the rotor through the play, which side then carries it.
+  // gear. torque_n_m: the motor's; it moves the rotor through the gear's play, to the side that then
+  // carries it.
   void Follow(double wheels_rad, double torque_n_m, double step_s);
   std::int64_t counts() const { return counts_; }
 

@@ -2,8 +2,8 @@
 // (sim/drive/drivetrain.h).
 #pragma once
 
+#include "robot/types/drivetrain_config.h"
 #include "robot/types/time.h"
-#include "sim/drive/drivetrain_config.h"
 
 namespace merlin::sim {
 
@@ -17,10 +17,10 @@ class SteeringServo {
   SteeringServo() = default;
   SteeringServo(const DrivetrainConfig& config, double steering_max_rad);
 
-  // Where the linkage is to be, given what is commanded now: a pulse starts only every period and must differ from the
+  // The angle that the linkage is driven to, given the command: a pulse starts only every period and must differ from the
   // last that moved the servo by more than the dead band; the linkage follows the servo through the play.
   double LinkageTarget_rad(double command_rad, Time now);
-  // What the servo reports while the linkage stands at an angle.
+  // What the servo reports while the linkage is at an angle.
   double Report_rad(double linkage_rad) const {
     return linkage_rad - config_.steering_offset_rad + (servo_rad_ - linkage_rad_);
   }

@@ -145,6 +145,19 @@ Eigen::Vector3d HalfEdges(const CurvedGeom& curved) {
   }
 }
 
+RayGroup::Sphere RayGroup::Around() const {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : vertices) box.extend(vertex.cast<double>().eval());
+  for (const CurvedGeom& of : curved) {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(of.rotation);
+    const Eigen::Vector3d middle = Eigen::Vector3d::Map(of.position), half = R.cwiseAbs() * HalfEdges(of);
+    box.extend((middle - half).eval());
+    box.extend((middle + half).eval());
+  }
+  if (box.isEmpty()) return {};
+  return {box.center(), 0.5 * box.diagonal().norm()};
+}
+
 std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& skip_body,
                                 const std::vector<bool>& is_pane) {
   const std::vector<Pose> reference = ReferencePoses(model);

@@ -1,4 +1,4 @@
-// What the rays meet, as MuJoCo's model has it: its visible geoms, grouped by what moves together.
+// The visible geoms of a MuJoCo model, as the ray caster needs them: grouped by what moves together.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -37,7 +37,7 @@ struct RayGroup {
   int body = 0;
   Pose T_body_group = Pose::Identity();
   bool one_sided = false;  // a plane: MuJoCo's are seen from above only
-  bool fixed = false;      // stands for good, and its frame is the world's
+  bool fixed = false;      // never moves, and its frame is the world's
   bool panes = false;      // geoms that can be looked through
 
   std::vector<Eigen::Vector3f> vertices;
@@ -45,6 +45,13 @@ struct RayGroup {
   std::vector<RayFace> faces;
   std::vector<int> face_of_triangle;  // index into faces
   std::vector<CurvedGeom> curved;
+
+  // In the group's frame, about the middle of the smallest upright box around all its geoms.
+  struct Sphere {
+    Eigen::Vector3d middle{0, 0, 0};
+    double radius_m = 0.0;
+  };
+  Sphere Around() const;
 };
 
 Pose ToPose(const mjtNum* position, const mjtNum* quaternion_wxyz);

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 #include <deque>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "robot/base/error.h"
-#include "sim/rays/embree.h"
-#include "sim/rays/ray_group.h"
+#include "sim/rays/embree_group.h"
 
 namespace merlin::sim {
 namespace {
@@ -18,123 +15,12 @@ namespace {
 // One thread: the scene is small, and its bits must not depend on who builds it. A fixed widest instruction set: the
 // same bits on every machine that has it.
 constexpr char kDeviceConfig[] = "threads=1,set_affinity=0,max_isa=avx2";
-constexpr float kBoundsMargin_m = 1e-4f;  // a curved geom's box must hold it in float, too
 
-constexpr unsigned kOpaqueMask = 1, kPaneMask = 2;
-
-// Embree's numbers of the g-th group's geometries, in whichever scene they are: 2 g for triangles, 2 g + 1 for curved ones.
-constexpr unsigned TrianglesId(unsigned group) { return 2 * group; }
-constexpr unsigned CurvedId(unsigned group) { return 2 * group + 1; }
-constexpr bool IsCurved(unsigned id) { return id % 2 == 1; }
-constexpr unsigned GroupOf(unsigned id) { return id / 2; }
-
-unsigned MaskOf(const RayGroup& group) { return group.panes ? kPaneMask : kOpaqueMask; }
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, Release>;
-using Scene = std::unique_ptr<RTCSceneTy, Release>;
-using Geometry = std::unique_ptr<RTCGeometryTy, Release>;
-
-void CurvedBounds(const RTCBoundsFunctionArguments* args) {
-  const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];
-  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(curved.rotation);
-  const Eigen::Vector3f centre = Eigen::Map<const Eigen::Vector3d>(curved.position).cast<float>();
-  const Eigen::Vector3f half = (R.cwiseAbs() * HalfEdges(curved)).cast<float>().array() + kBoundsMargin_m;
-  const Eigen::Vector3f low = centre - half, high = centre + half;
-  *args->bounds_o = {low.x(), low.y(), low.z(), 0.0f, high.x(), high.y(), high.z(), 0.0f};
-}
-
-// Range along the ray, or a negative number.
-float HitCurved(const CurvedGeom& curved, RTCRayN* rays, unsigned n, unsigned i, mjtNum normal[3]) {
-  const mjtNum origin[3] = {RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)};
-  const mjtNum direction[3] = {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)};
-  const float range = static_cast<float>(
-      mju_rayGeom(curved.position, curved.rotation, curved.size, origin, direction, curved.type, normal));
-  return range >= RTCRayN_tnear(rays, n, i) && range <= RTCRayN_tfar(rays, n, i) ? range : -1.0f;
-}
-
-void IntersectCurved(const RTCIntersectFunctionNArguments* args) {
-  const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];
-  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
-  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
-  for (unsigned i = 0; i < args->N; ++i) {
-    mjtNum normal[3];
-    const float range = args->valid[i] ? HitCurved(curved, rays, args->N, i, normal) : -1.0f;
-    if (range < 0.0f) continue;
-    RTCRayN_tfar(rays, args->N, i) = range;
-    RTCHitN_Ng_x(hits, args->N, i) = static_cast<float>(normal[0]);
-    RTCHitN_Ng_y(hits, args->N, i) = static_cast<float>(normal[1]);
-    RTCHitN_Ng_z(hits, args->N, i) = static_cast<float>(normal[2]);
-    RTCHitN_primID(hits, args->N, i) = args->primID;
-    RTCHitN_geomID(hits, args->N, i) = args->geomID;
-    RTCHitN_instID(hits, args->N, i, 0) = args->context->instID[0];
-  }
-}
-
-void OccludeByCurved(const RTCOccludedFunctionNArguments* args) {
-  const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];
-  for (unsigned i = 0; i < args->N; ++i) {
-    mjtNum normal[3];
-    if (args->valid[i] && HitCurved(curved, args->ray, args->N, i, normal) >= 0.0f)
-      RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
-  }
-}
-
-// Rejects hits of a plane from below; the ray is in the group's frame, which is the plane's.
-void SeenFromAboveOnly(const RTCFilterFunctionNArguments* args) {
-  for (unsigned i = 0; i < args->N; ++i)
-    if (RTCRayN_dir_z(args->ray, args->N, i) >= 0.0f) args->valid[i] = 0;
-}
-
-Scene NewScene(RTCDevice device, RTCSceneFlags flags) {
-  Scene scene(rtcNewScene(device));
-  rtcSetSceneFlags(scene.get(), flags);
-  return scene;
-}
-
-void AttachTriangles(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned id) {
-  const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  void* vertices = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(group.vertices[0]), group.vertices.size());
-  void* triangles = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            sizeof(group.triangles[0]), group.triangles.size());
-  std::memcpy(vertices, group.vertices.data(), group.vertices.size() * sizeof(group.vertices[0]));
-  std::memcpy(triangles, group.triangles.data(), group.triangles.size() * sizeof(group.triangles[0]));
-  if (group.one_sided) {
-    rtcSetGeometryIntersectFilterFunction(geometry.get(), SeenFromAboveOnly);
-    rtcSetGeometryOccludedFilterFunction(geometry.get(), SeenFromAboveOnly);
-  }
-  rtcSetGeometryMask(geometry.get(), MaskOf(group));
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometryByID(scene, geometry.get(), id);
-}
-
-void AttachCurved(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned id) {
-  const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
-  rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(group.curved.size()));
-  rtcSetGeometryUserData(geometry.get(), const_cast<RayGroup*>(&group));  // read only
-  rtcSetGeometryBoundsFunction(geometry.get(), CurvedBounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry.get(), IntersectCurved);
-  rtcSetGeometryOccludedFunction(geometry.get(), OccludeByCurved);
-  rtcSetGeometryMask(geometry.get(), MaskOf(group));
-  rtcCommitGeometry(geometry.get());
-  rtcAttachGeometryByID(scene, geometry.get(), id);
-}
-
-void Attach(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned number) {
-  if (!group.triangles.empty()) AttachTriangles(device, scene, group, TrianglesId(number));
-  if (!group.curved.empty()) AttachCurved(device, scene, group, CurvedId(number));
-}
-
-// A group that moves, or has a frame of its own: a scene of its own, and where it stands.
+// A group that moves or has a frame of its own: it has a scene of its own, and a pose.
 struct Instance {
   const RayGroup* group;
-  Scene scene;
-  Geometry geometry;
+  EmbreeScene scene;
+  EmbreeGeometry geometry;
   Eigen::Matrix3f R_world_group = Eigen::Matrix3f::Identity();
   Eigen::Matrix4f T_world_group_last = Eigen::Matrix4f::Identity();
   bool placed = false;
@@ -149,7 +35,7 @@ struct Instance {
     rtcSetGeometryMask(geometry.get(), MaskOf(of));
   }
 
-  // False: it stands there already.
+  // False: it was there already.
   bool Place(const Pose& T_world_group) {
     const Eigen::Matrix4f matrix = T_world_group.matrix().cast<float>();
     if (placed && matrix == T_world_group_last) return false;
@@ -163,6 +49,8 @@ struct Instance {
 };
 
 constexpr int kPacket = 8;
+constexpr float kBoundMargin_m = 1e-2f;
+constexpr std::size_t kBoundsMax = 8;  // with more instances, Embree's own hierarchy is faster
 
 // Eight rays as Embree takes them; lanes beyond count repeat the first and are not valid.
 template <class Packet>
@@ -182,6 +70,27 @@ void Fill(Packet& ray, std::span<const Ray> rays, Panes panes) {
     ray.id[i] = ray.flags[i] = 0;
   }
 }
+
+// A sphere around an instance, world frame. Most packets of rays pass all of them by, and to ask Embree costs more.
+struct Bound {
+  Eigen::Vector3f middle{0, 0, 0};
+  float radius_m = 0.0f;
+
+  // Whether one of eight rays may meet it before its end; true where rounding leaves a doubt.
+  template <class Packet>
+  bool MayMeet(const Packet& ray) const {
+    const float cx = middle.x(), cy = middle.y(), cz = middle.z(), reach_m = radius_m + kBoundMargin_m;
+    int meets = 0;
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      const float tx = cx - ray.org_x[i], ty = cy - ray.org_y[i], tz = cz - ray.org_z[i];
+      const float along = tx * ray.dir_x[i] + ty * ray.dir_y[i] + tz * ray.dir_z[i];
+      const float px = tx - along * ray.dir_x[i], py = ty - along * ray.dir_y[i], pz = tz - along * ray.dir_z[i];
+      meets |=
+          (px * px + py * py + pz * pz <= reach_m * reach_m) & (along >= -reach_m) & (along - reach_m <= ray.tfar[i]);
+    }
+    return meets != 0;
+  }
+};
 
 struct Lanes {
   explicit Lanes(std::size_t count) {
@@ -237,15 +146,19 @@ void Occlude(const Lanes& lanes, RTCScene scene, RTCRay8& packet) {
 // rooms have nothing in it, and their rays then meet one hierarchy only.
 struct RayScene::Impl {
   std::deque<RayGroup> groups;  // Embree keeps their addresses
-  Device device{rtcNewDevice(kDeviceConfig)};
+  EmbreeDevice device{rtcNewDevice(kDeviceConfig)};
   std::map<unsigned, Instance> instances;  // by the group's number
   std::vector<int> first_face;             // of a group
+  std::vector<RayGroup::Sphere> spheres;   // the same
+  std::vector<int> body_of_geom;
   std::vector<Face> faces;
-  Scene fixed, moving;
-  bool has_instances = false, fresh = true;  // fresh: never committed
+  EmbreeScene fixed, moving;
+  std::vector<Bound> bounds;  // of the instances, where the last Update put them
+  bool fresh = true;          // never committed
 
   Impl(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane)
-      : groups(GroupGeoms(model, skip_body, is_pane)) {
+      : groups(GroupGeoms(model, skip_body, is_pane)),
+        body_of_geom(model->geom_bodyid, model->geom_bodyid + model->ngeom) {
     if (!device) throw MachineError("ray casting: Embree cannot be started on this machine");
     fixed = NewScene(device.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(fixed.get(), RTC_BUILD_QUALITY_HIGH);
@@ -253,6 +166,7 @@ struct RayScene::Impl {
     for (unsigned number = 0; number < groups.size(); ++number) {
       const RayGroup& group = groups[number];
       first_face.push_back(static_cast<int>(faces.size()));
+      spheres.push_back(group.Around());
       faces.resize(faces.size() + group.faces.size());
       if (group.fixed) {
         Attach(device.get(), fixed.get(), group, number);
@@ -262,7 +176,7 @@ struct RayScene::Impl {
       const Instance& made = instances.try_emplace(number, device.get(), group, number).first->second;
       rtcAttachGeometryByID(moving.get(), made.geometry.get(), number);
     }
-    has_instances = !instances.empty();
+    bounds.resize(instances.size());
     rtcCommitScene(fixed.get());
   }
 
@@ -277,17 +191,28 @@ struct RayScene::Impl {
 
   void Update(const BodyMotions& bodies, double dt_s) {
     bool moved = std::exchange(fresh, false);
+    std::size_t at = 0;
     for (auto& [number, instance] : instances) {
+      Bound& bound = bounds[at++];
       const RayGroup& group = groups[number];
       const Pose T_world_group = bodies[static_cast<std::size_t>(group.body)].At(dt_s) * group.T_body_group;
       if (!instance.Place(T_world_group)) continue;
       SetFaces(number, T_world_group);
+      const RayGroup::Sphere& around = spheres[number];
+      bound = {(T_world_group * around.middle).cast<float>(), static_cast<float>(around.radius_m)};
       moved = true;
     }
     if (!moved) return;
     rtcCommitScene(moving.get());
     if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE)
       throw MachineError("ray casting: Embree could not build its scene");
+  }
+
+  // Whether what moves is worth asking, once these rays have met what is fixed.
+  template <class Packet>
+  bool MayMeetMoving(const Packet& ray) const {
+    return bounds.size() > kBoundsMax ||
+           std::ranges::any_of(bounds, [&](const Bound& bound) { return bound.MayMeet(ray); });
   }
 
   RayHit ReadHit(const RTCRayHit8& packet, std::size_t i, const Eigen::Vector3f& direction_world) const {
@@ -320,10 +245,21 @@ RayScene::RayScene(const mjModel* model, const std::vector<bool>& skip_body, con
 
 RayScene::~RayScene() = default;
 
-bool RayScene::Moves(const BodyMotions& bodies) const {
-  return std::ranges::any_of(
-      impl_->groups, [&](const RayGroup& group) { return !bodies[static_cast<std::size_t>(group.body)].still(); });
+std::vector<Mover> RayScene::Movers(const BodyMotions& bodies) const {
+  std::vector<Mover> movers;
+  for (std::size_t number = 0; number < impl_->groups.size(); ++number) {
+    const RayGroup& group = impl_->groups[number];
+    const BodyMotion& body = bodies[static_cast<std::size_t>(group.body)];
+    if (body.still()) continue;
+    const RayGroup::Sphere& around = impl_->spheres[number];
+    const BodyMotion middle = body.Of(group.T_body_group * Pose(Eigen::Translation3d(around.middle)));
+    movers.push_back({group.body, middle.T_world_body.translation(), around.radius_m,
+                      middle.velocity_m_s.norm() + middle.angular_velocity_rad_s.norm() * around.radius_m});
+  }
+  return movers;
 }
+
+int RayScene::BodyOf(int geom) const { return impl_->body_of_geom[static_cast<std::size_t>(geom)]; }
 
 const std::vector<Face>& RayScene::faces() const { return impl_->faces; }
 
@@ -339,7 +275,7 @@ void RayScene::Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes pan
     std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
     Intersect(lanes, impl_->fixed.get(), packet);
-    if (impl_->has_instances) Intersect(lanes, impl_->moving.get(), packet);
+    if (impl_->MayMeetMoving(packet.ray)) Intersect(lanes, impl_->moving.get(), packet);
     for (std::size_t i = 0; i < some.size(); ++i) hits[first + i] = impl_->ReadHit(packet, i, some[i].direction);
   }
 }
@@ -352,7 +288,7 @@ void RayScene::Occluded(std::span<const Ray> rays, std::span<std::uint8_t> block
     RTCRay8 packet;
     Fill(packet, some, panes);
     Occlude(lanes, impl_->fixed.get(), packet);
-    if (impl_->has_instances) Occlude(lanes, impl_->moving.get(), packet);
+    if (impl_->MayMeetMoving(packet)) Occlude(lanes, impl_->moving.get(), packet);
     for (std::size_t i = 0; i < some.size(); ++i) blocked[first + i] = packet.tfar[i] < 0.0f;
   }
 }

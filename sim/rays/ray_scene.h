@@ -1,6 +1,9 @@
-// Embree's view of the MuJoCo model: rays against every visible geom (group 0-2, alpha > 0: the material's where there
-// is one), moving bodies included. What mj_ray would say, in float and faster: planes are seen from above only
-// (infinite ones reach 1000 m each way), other geoms from inside, too.
+// Casts rays into the MuJoCo model with Embree. It gives the answers of mj_ray, in single precision and many times faster.
+//
+// Rays meet every visible geom (group 0-2 and alpha > 0; where a geom has a material, the material's alpha counts).
+// Planes are seen from above only, and infinite ones reach 1000 m each way; other geoms are seen from inside too.
+// Everything fixed is one Embree scene. Every body that moves is an instance in a second one: Update moves the instances,
+// and Cast asks both scenes. All coordinates are in the world frame.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -16,7 +19,7 @@
 namespace merlin::sim {
 
 constexpr int kNoFace = -1, kCurvedFace = -2;
-constexpr float kClear_m = 1e-3f;  // a ray begins this far off the surface that it leaves
+constexpr float kClear_m = 1e-3f;  // a ray that leaves a surface begins this far from it
 
 struct RayHit {
   float range_m = -1.0f;            // along the unit direction; negative: nothing within reach
@@ -25,7 +28,7 @@ struct RayHit {
   Eigen::Vector3f normal{0, 0, 0};  // unit, world frame, facing the ray's origin
 };
 
-// A plane of one geom, as it stands in the world.
+// A plane that triangles of one geom lie in, in the world frame.
 struct Face {
   int geom = -1;
   Eigen::Vector3f normal{0, 0, 0};  // unit
@@ -36,6 +39,14 @@ struct Ray {
   Eigen::Vector3f origin{0, 0, 0};     // world
   Eigen::Vector3f direction{1, 0, 0};  // unit, world
   float max_range_m = 100.0f;          // beyond it nothing is seen
+};
+
+// Geoms of one body that moves, in the world.
+struct Mover {
+  int body = 0;
+  Eigen::Vector3d middle{0, 0, 0};  // of a sphere around them
+  double radius_m = 0.0;
+  double speed_m_s = 0.0;  // no point of them is faster
 };
 
 enum class Panes { kSeen, kLookedThrough };
@@ -57,10 +68,11 @@ class RayScene {
   void Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes = Panes::kSeen) const;
   // blocked[i] = 1 where ray i meets anything before its max_range_m.
   void Occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Panes panes) const;
-  // What the faces of hits are, where the last Update put them.
+  int BodyOf(int geom) const;
+  // The planes that RayHit::face counts, where the last Update put them.
   const std::vector<Face>& faces() const;
-  // Does anything that can be seen move?
-  bool Moves(const BodyMotions& bodies) const;
+  // The visible groups whose bodies move.
+  std::vector<Mover> Movers(const BodyMotions& bodies) const;
 
  private:
   struct Impl;

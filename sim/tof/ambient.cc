@@ -48,9 +48,9 @@ void AddSky(const RayScene& scene, const Surroundings& around, const Window& win
   std::vector<std::size_t> of;
   std::vector<double> gain;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d way = window.middle - points[i].point.cast<double>();
-    const double distance_m = way.norm();
-    const Eigen::Vector3d direction = way / std::max(distance_m, 1e-6);
+    const Eigen::Vector3d to_window = window.middle - points[i].point.cast<double>();
+    const double distance_m = to_window.norm();
+    const Eigen::Vector3d direction = to_window / std::max(distance_m, 1e-6);
     const double here = points[i].normal.cast<double>().dot(direction), there = std::abs(window.normal.dot(direction));
     if (here <= 0.0) continue;
     rays.push_back(RayFrom(points[i], direction.cast<float>(), static_cast<float>(distance_m)));
@@ -86,7 +86,7 @@ void AddOneOfEachFace(const Optics& optics, const MidHits& mid, std::size_t pixe
   }
 }
 
-// [sub-ray of these] bit b: something stands between it and board b.
+// For each of these sub-rays; bit b: something is between it and board b.
 std::vector<std::uint8_t> BoardsBlocked(const RayScene& scene, const Optics& optics, const MidHits& mid,
                                         std::span<const std::size_t> sub_rays) {
   std::vector<std::uint8_t> bits(sub_rays.size(), 0), blocked(sub_rays.size());
@@ -95,8 +95,8 @@ std::vector<std::uint8_t> BoardsBlocked(const RayScene& scene, const Optics& opt
     std::vector<Ray> rays;
     for (const std::size_t i : sub_rays) {
       const LitPoint from{mid.Point(i), mid.hits[i].normal};
-      const Eigen::Vector3f way = lamp - from.point;
-      rays.push_back(RayFrom(from, way.normalized(), way.norm()));
+      const Eigen::Vector3f to_lamp = lamp - from.point;
+      rays.push_back(RayFrom(from, to_lamp.normalized(), to_lamp.norm()));
     }
     scene.Occluded(rays, blocked, Panes::kLookedThrough);
     for (std::size_t r = 0; r < bits.size(); ++r) bits[r] |= static_cast<std::uint8_t>(blocked[r] << b);

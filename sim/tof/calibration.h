@@ -1,4 +1,4 @@
-// What a camera adds to every phase by itself, and what its factory calibration takes off again.
+// Errors that a camera itself adds to every phase, and how much of them its factory calibration subtracts again.
 #pragma once
 
 #include <vector>
@@ -16,10 +16,11 @@ struct FixedPattern {
                std::uint64_t seed);
   std::vector<PixelTraits> traits;
   std::vector<float> range_m;  // what the pixel adds
-  std::vector<float> known_m;  // of that, what the calibration takes off
+  std::vector<float> known_m;  // how much of that the calibration subtracts
 };
 
-// Drift [m]: what the temperatures of camera and room add at time since_cold; of that, what the calibration takes off.
+// Drift [m]: what the temperatures of camera and room add at time since_cold; how much of that the calibration
+// subtracts.
 struct Drift {
   double range_m = 0.0, known_m = 0.0;
 };
@@ -29,7 +30,7 @@ Drift DriftAt(const DepthCameraErrors& errors, const TofEffects& effects, Time s
 // -(harmonic_3 - harmonic_5) sin(4 phase).
 double WigglingError_rad(double phase_rad, const DepthCameraErrors& errors);
 
-// Takes the wiggling off a decoded phase but for a residual of errors.wiggling_residual_m rms: a table over the phase.
+// Subtracts the wiggling from a decoded phase, all but a residual of errors.wiggling_residual_m rms. A table over the phase.
 class WigglingCorrection {
  public:
   WigglingCorrection(const DepthCameraErrors& errors, double frequency_hz);

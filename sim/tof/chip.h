@@ -1,4 +1,5 @@
-// The two-tap lock-in pixel and its converter: light in, taps out, and the four-phase decoding.
+// The two-tap lock-in pixel and its converter. Each pixel collects electrons in two taps, A while the modulation is high
+// and B while it is low; A - B in four sub-frames gives the phase.
 // R. Lange, "3D time-of-flight distance measurement with custom solid-state image sensors in CMOS/CCD-technology", PhD
 // thesis, Siegen 2000; the physical model of Schmidt and Jaehne, "A physical model of time-of-flight 3D imaging
 // systems, including suppression of ambient light", LNCS 5742 (2009).
@@ -17,7 +18,7 @@ struct PixelLight {
   double correlation_e = 0.0;  // m_k = C Re(Z_1 e^(j tau_k) + ...), tau_k = k pi / 2
 };
 
-// What is peculiar to a pixel.
+// How a pixel differs from the others.
 struct PixelTraits {
   float gain = 0.0f;      // A grows by this share, B shrinks
   float offset_e = 0.0f;  // of both taps
@@ -28,8 +29,8 @@ struct PixelTraits {
 struct Taps {
   double a_e = 0.0, b_e = 0.0;
   bool saturated = false;                // one of them reached the full well
-  double suppressed_e = 0.0;             // background that was taken away from each, ...
-  double suppression_variance_e2 = 0.0;  // ... and what noise that brought
+  double suppressed_e = 0.0;             // background removed from each tap (SBI) ...
+  double suppression_variance_e2 = 0.0;  // ... and the noise that this added
 };
 
 // In this order: sharing, gain and offset, SBI, soft response, full well, noise, converter.

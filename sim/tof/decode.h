@@ -1,5 +1,5 @@
-// From taps to a frame: phase, amplitude, intensity, flags, and what the factory calibration takes off; then, when
-// asked for, the maker's post-processing.
+// From the taps of four (or eight) sub-frames to a frame: phase and so range, amplitude, intensity, flags. The factory
+// calibration is subtracted here. The maker's post-processing follows if the settings ask for it.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ class Decoder {
   void Decode(std::span<const Taps> taps, bool lit, std::size_t pixel, DepthFrame& frame) const;
 
  private:
-  // One of the frame's frequencies, and what takes its wiggling off.
+  // One of the frame's frequencies, and the correction of its wiggling (null: none).
   struct Wave {
     double frequency_hz, period_m;
     const WigglingCorrection* correction;

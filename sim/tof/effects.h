@@ -17,7 +17,7 @@ struct TofEffects {
   bool intensity = true;      // dark surfaces read nearer: response, and what it does not explain
   bool flying = true;         // a pixel sees an area: sub-rays
   bool motion = true;         // sub-frames are taken one after the other
-  bool multipath = true;      // light that comes by way of another surface
+  bool multipath = true;      // light that comes from another surface
   bool glass = true;          // panes let through and mirror
   bool specular = true;       // mirrors, polished and retro-reflecting surfaces
   bool scatter = true;        // between lens and chip

@@ -60,6 +60,12 @@ int InstantOf(const Optics& optics, std::size_t sub_ray) {
   return static_cast<int>(sub_ray / kSubRaysPerEdge + sub_ray % kSubRaysPerEdge) % SubFrame::kInstants;
 }
 
+// A pixel is narrowest, seen from the lens, at the picture's edge.
+double NarrowestPixel_rad(const Optics& optics) {
+  return std::min(2.0 * optics.tan_half_x / optics.width, 2.0 * optics.tan_half_y / optics.height) /
+         (1.0 + optics.tan_half_x * optics.tan_half_x + optics.tan_half_y * optics.tan_half_y);
+}
+
 void Set(RowHits& row, std::size_t at, int geom, float range_m, const Eigen::Vector3f& normal_camera) {
   row.range_m[at] = range_m;
   row.normal_x[at] = normal_camera.x();
@@ -212,12 +218,29 @@ void RowOfMid(const Optics& optics, const MidHits& mid, int v, RowHits& row) {
   }
 }
 
+double PictureMotion_px(const Optics& optics, const RayScene& scene, const MidHits& mid, const Mover& mover,
+                        double span_s) {
+  // Where it is seen, as far as it is seen. Elsewhere: hidden, or outside the picture's corner by more than it can move.
+  float nearest_m = HUGE_VALF;
+  for (const RayHit& hit : mid.hits)
+    if (hit.geom >= 0 && scene.BodyOf(hit.geom) == mover.body) nearest_m = std::min(nearest_m, hit.range_m);
+  double away_m = nearest_m;
+  if (!std::isfinite(nearest_m)) {
+    const Eigen::Vector3d middle_camera = mid.T_world_camera.inverse() * mover.middle;
+    const double distance_m = middle_camera.norm(), radius_m = mover.radius_m + span_s * mover.speed_m_s;
+    away_m = distance_m - radius_m;
+    if (away_m > 0.0) {
+      const double corner_rad = std::atan(std::hypot(optics.tan_half_x, optics.tan_half_y));
+      const double off_rad = std::acos(std::clamp(middle_camera.z() / distance_m, -1.0, 1.0));
+      if (off_rad - std::asin(radius_m / distance_m) > corner_rad) return 0.0;
+    }
+  }
+  return 0.5 * span_s * (mover.speed_m_s / std::max(away_m, 1e-3)) / NarrowestPixel_rad(optics);
+}
+
 double PictureMotion_px(const Optics& optics, const BodyMotion& camera, double span_s, double nearest_m) {
   const double turn_rad = camera.angular_velocity_rad_s.norm() + camera.velocity_m_s.norm() / std::max(nearest_m, 1e-3);
-  // A pixel is narrowest, seen from the lens, at the picture's edge.
-  const double pixel_rad = std::min(2.0 * optics.tan_half_x / optics.width, 2.0 * optics.tan_half_y / optics.height) /
-                           (1.0 + optics.tan_half_x * optics.tan_half_x + optics.tan_half_y * optics.tan_half_y);
-  return 0.5 * span_s * turn_rad / pixel_rad;
+  return 0.5 * span_s * turn_rad / NarrowestPixel_rad(optics);
 }
 
 }  // namespace merlin::sim

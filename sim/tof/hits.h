@@ -1,5 +1,6 @@
-// What the sub-rays of a frame meet: all of them at mid-exposure, then again in every sub-frame as camera and bodies
-// move.
+// What the sub-rays of a frame meet. All of them are traced at mid-exposure. In a sub-frame camera and bodies are
+// elsewhere: a sub-ray that in the mid-exposure met a plane, and had no edge near, still meets that plane, and its range is
+// one division; only the others are traced again.
 #pragma once
 
 #include <array>
@@ -24,11 +25,12 @@ struct MidHits {
 
   Eigen::Vector3f Point(std::size_t i) const { return rays[i].origin + hits[i].range_m * rays[i].direction; }
 };
-// Every second sub-ray is traced, as on a chessboard; one whose neighbours all meet one plane meets it, too. What is
-// thinner than a sub-ray may so be missed half of the times.
+// Every second sub-ray is traced, in a chessboard pattern. A sub-ray between them whose neighbours all meet one plane is
+// taken to meet it too, so something thinner than a sub-ray is missed half of the time.
 MidHits TraceMid(const RayScene& scene, const Optics& optics, const Pose& T_world_camera, int threads);
 
-// Of the sub-rays of one row of pixels in one sub-frame; vectors in the optical frame of the sub-ray's own instant.
+// What the sub-rays of one row of pixels meet in one sub-frame. Vectors are in the optical frame at the sub-ray's own
+// instant.
 struct RowHits {
   std::vector<float> range_m;  // negative: nothing
   std::vector<float> normal_x, normal_y, normal_z;
@@ -36,14 +38,15 @@ struct RowHits {
   void Resize(std::size_t n);
 };
 
-// Those of them that are traced.
+// The rays among them that are traced.
 struct RowRays {
   std::vector<Ray> rays;
   std::vector<RayHit> hits;
 };
 
-// When the sub-frames are taken: sub-ray (i, j) of a pixel sees the instant number (i + j) mod 3 of the three into
-// which its integration is cut: a moving edge blurs, and no more rays are traced for it.
+// When a sub-frame is taken. Its integration is cut into three instants, and sub-ray (i, j) of a pixel sees number
+// (i + j) mod 3 of them: so the edges that a moving camera passes blur, without more rays. Bodies stand where they are at
+// the sub-frame's middle.
 struct SubFrame {
   double begin_s = 0.0;  // from mid-exposure
   double integration_s = 0.0;
@@ -52,8 +55,8 @@ struct SubFrame {
   double Middle_s() const { return begin_s + 0.5 * integration_s; }
 };
 
-// What the sub-frames need not trace: sub-rays that in the mid-exposure are far enough from any edge are taken from their
-// plane.
+// Which sub-rays the sub-frames take from their plane ("calm": far enough from any edge at mid-exposure), and which they
+// trace.
 struct FramePlan {
   struct Stretch {
     std::size_t begin, end;  // in the row: neighbours with one instant and one face
@@ -73,7 +76,7 @@ class SubFrameTracer {
  public:
   SubFrameTracer(const RayScene& scene, const Optics& optics, const FramePlan& plan, const BodyMotion& camera,
                  const SubFrame& sub_frame);
-  // rays: room to work in.
+  // rays: scratch buffers.
   void Row(int row, RowHits& hits, RowRays& rays) const;
 
  private:
@@ -93,8 +96,12 @@ class SubFrameTracer {
   std::vector<std::array<SeenFace, SubFrame::kInstants>> seen_;  // [face], of those that calm sub-rays see
 };
 
-// The mid-exposure's, for a camera that stands in a scene that stands.
+// The mid-exposure's: right for every sub-frame if neither the camera nor anything in the scene moves.
 void RowOfMid(const Optics& optics, const MidHits& mid, int row, RowHits& hits);
+
+// How far the picture of this moves [pixels] within span_s / 2 of mid-exposure, at most; 0 for what cannot get into it.
+double PictureMotion_px(const Optics& optics, const RayScene& scene, const MidHits& mid, const Mover& mover,
+                        double span_s);
 
 // How far the picture moves [pixels] within span_s / 2 of mid-exposure, at most, for what is nearest_m away.
 double PictureMotion_px(const Optics& optics, const BodyMotion& camera, double span_s, double nearest_m);

@@ -16,9 +16,9 @@ double WaveNumber(double frequency_hz) { return 4.0 * std::numbers::pi * frequen
 
 }  // namespace
 
-// Room to work in, of one row.
-struct LightModel::RowRoom {
-  explicit RowRoom(const Optics& optics)
+// Buffers that the rows of one thread share.
+struct LightModel::RowScratch {
+  explicit RowScratch(const Optics& optics)
       : work(static_cast<std::size_t>(optics.width), static_cast<std::size_t>(optics.per_pixel)),
         light(static_cast<std::size_t>(optics.width)),
         ambient_e(static_cast<std::size_t>(optics.width)),
@@ -49,17 +49,21 @@ std::vector<SubFrame> LightModel::SubFrames(const DepthSettings& settings) const
 }
 
 bool LightModel::Moves(const TofView& view) const {
-  return effects_.motion && (!view.camera.still() || view.scene.Moves(view.bodies));
+  return effects_.motion && (!view.camera.still() || !view.scene.Movers(view.bodies).empty());
 }
 
-// What stands can be taken from its plane where no edge comes near within the exposure.
+// A plane, moving or not, needs no rays where no edge, the camera's motion and its own together, comes near within the
+// exposure.
 std::vector<std::uint8_t> LightModel::Calm(const TofView& view, const MidHits& mid,
                                            const DepthSettings& settings) const {
-  if (view.scene.Moves(view.bodies)) return {};
   float nearest_m = 100.0f;
   for (const RayHit& hit : mid.hits)
     if (hit.geom >= 0) nearest_m = std::min(nearest_m, hit.range_m);
-  const double motion_px = PictureMotion_px(optics_, view.camera, sheet_.ExposureSpan_s(settings), nearest_m);
+  const double span_s = sheet_.ExposureSpan_s(settings);
+  double mover_px = 0.0;
+  for (const Mover& mover : view.scene.Movers(view.bodies))
+    mover_px = std::max(mover_px, PictureMotion_px(optics_, view.scene, mid, mover, span_s));
+  const double motion_px = PictureMotion_px(optics_, view.camera, span_s, nearest_m) + mover_px;
   const double reach = std::ceil(std::min(mid.grid.edge * motion_px, 1e6));
   return CalmSubRays(mid.grid, mid.hits, static_cast<int>(reach));
 }
@@ -112,48 +116,48 @@ LightImages LightModel::Expose(const Still& still, const Now& now, const FixedPa
   const std::size_t pixels = optics_.pixels();
   LightImages images{std::vector<float>(pixels), std::vector<float>(pixels), std::vector<std::uint8_t>(pixels)};
   ParallelFor((optics_.height + kBand - 1) / kBand, threads_, [&](int band) {
-    RowRoom room(optics_);
+    RowScratch scratch(optics_);
     for (int v = band * kBand; v < std::min(optics_.height, (band + 1) * kBand); ++v)
-      ExposeRow(still, now, pattern, drift, v, room, images);
+      ExposeRow(still, now, pattern, drift, v, scratch, images);
   });
   return images;
 }
 
 void LightModel::ExposeRow(const Still& still, const Now& now, const FixedPattern& pattern, const Drift& drift, int v,
-                           RowRoom& room, LightImages& images) const {
+                           RowScratch& scratch, LightImages& images) const {
   const std::size_t width = static_cast<std::size_t>(optics_.width), row = static_cast<std::size_t>(v),
                     first = row * width;
   const double wave_number = WaveNumber(now.frequency_hz), contrast = sheet_.Contrast(now.frequency_hz);
   const double K_T = sheet_.signal_e_m2_per_us * now.integration_s * 1e6;
   if (now.tracer != nullptr)
-    now.tracer->Row(v, room.hits, room.rays);
+    now.tracer->Row(v, scratch.hits, scratch.rays);
   else
-    RowOfMid(optics_, still.mid, v, room.hits);
+    RowOfMid(optics_, still.mid, v, scratch.hits);
   const std::span<const ExtraReturn> extra(still.extra.data() + still.extra_from[row],
                                            still.extra.data() + still.extra_from[row + 1]);
-  PhasorRow& light = room.light;
-  RowPhasors(room.hits, optics_, {K_T / optics_.per_pixel, wave_number, still.lamp_albedo}, still.mid, still.shadow,
-             extra, v, room.work, light);
+  PhasorRow& light = scratch.light;
+  RowPhasors(scratch.hits, optics_, {K_T / optics_.per_pixel, wave_number, still.lamp_albedo}, still.mid, still.shadow,
+             extra, v, scratch.work, light);
   for (std::size_t u = 0; u < width; ++u) {
     images.lit[first + u] = light.total_e[u] > 0.0f;
     if (!still.bounce.empty()) light.Add(u, still.bounce[first + u]);
-    room.ambient_e[u] = 0.0f;
+    scratch.ambient_e[u] = 0.0f;
   }
   if (!still.ambient.empty()) {
     const float gain =
         static_cast<float>(K_T * errors_.filter_nm / errors_.lamp_w_per_sr);  // [e] of albedo times irradiance
     for (std::size_t u = 0; u < width; ++u)
-      room.ambient_e[u] = gain * optics_.lens[first + u] * still.ambient[first + u];
+      scratch.ambient_e[u] = gain * optics_.lens[first + u] * still.ambient[first + u];
   }
-  AddOffsets(contrast, room);
+  AddOffsets(contrast, scratch);
   for (std::size_t u = 0; u < width; ++u)
-    room.offset[u] = static_cast<float>(wave_number) *
-                     (room.offset[u] + pattern.range_m[first + u] + static_cast<float>(drift.range_m));
-  light.Turn(room.offset);
+    scratch.offset[u] = static_cast<float>(wave_number) *
+                        (scratch.offset[u] + pattern.range_m[first + u] + static_cast<float>(drift.range_m));
+  light.Turn(scratch.offset);
   const std::array<float, 3> weights{1.0f, effects_.wiggling ? static_cast<float>(errors_.harmonic_3) : 0.0f,
                                      effects_.wiggling ? static_cast<float>(errors_.harmonic_5) : 0.0f};
   light.Correlate(now.k, weights, static_cast<float>(contrast), std::span(images.correlation_e).subspan(first, width));
-  for (std::size_t u = 0; u < width; ++u) images.total_e[first + u] = light.total_e[u] + room.ambient_e[u];
+  for (std::size_t u = 0; u < width; ++u) images.total_e[first + u] = light.total_e[u] + scratch.ambient_e[u];
 }
 
 std::vector<Phasors> LightModel::Bounce(const TofView& view, const Still& still, double frequency_hz,
@@ -171,20 +175,20 @@ std::vector<Phasors> LightModel::Bounce(const TofView& view, const Still& still,
 }
 
 // Offsets of the phase, as lengths: intensity, ambient light.
-void LightModel::AddOffsets(double contrast, RowRoom& room) const {
-  std::ranges::fill(room.offset, 0.0f);
-  const std::vector<float>&re = room.light.re[0], &im = room.light.im[0];
+void LightModel::AddOffsets(double contrast, RowScratch& scratch) const {
+  std::ranges::fill(scratch.offset, 0.0f);
+  const std::vector<float>&re = scratch.light.re[0], &im = scratch.light.im[0];
   if (effects_.intensity) {
     // The amplitude of albedo 0.2 at 3 m in 1 ms at 20 MHz.
     const float amplitude_0_e = static_cast<float>(sheet_.LampAmplitude_e_m2({}) * 0.2 / 9.0);
     const float bias_m = static_cast<float>(errors_.intensity_bias_m);
     const float per_phasor = -static_cast<float>(contrast) / amplitude_0_e;
     for (std::size_t u = 0; u < re.size(); ++u)
-      room.offset[u] += bias_m * std::exp(per_phasor * std::sqrt(re[u] * re[u] + im[u] * im[u]));
+      scratch.offset[u] += bias_m * std::exp(per_phasor * std::sqrt(re[u] * re[u] + im[u] * im[u]));
   }
   if (effects_.sunlight) {
     const float per_e_m = static_cast<float>(errors_.ambient_bias_m / sheet_.full_well_e);
-    for (std::size_t u = 0; u < re.size(); ++u) room.offset[u] += per_e_m * room.ambient_e[u];
+    for (std::size_t u = 0; u < re.size(); ++u) scratch.offset[u] += per_e_m * scratch.ambient_e[u];
   }
 }
 

@@ -1,5 +1,13 @@
-// The light of a frame: every way it takes from lamp, sun and sky to the pixels, sub-frame by sub-frame, up to the
-// chip.
+// The light of a frame: what reaches each pixel from lamp, sun and sky, by every path, up to the chip.
+//
+// What changes little during a frame is computed once, at mid-exposure (class Still): panes and mirrors, lamp shadows,
+// ambient light, the bounce. Then each sub-frame traces again what the motion of camera and bodies can have changed:
+//
+//   Expose   for each sub-frame: move the bodies to its middle, then for each row of pixels
+//              SubFrameTracer::Row   ranges and normals
+//              RowPhasors            electrons and phases, summed per pixel
+//              AddOffsets            phase errors that depend on the light itself
+//              Correlate             what the chip's demodulation makes of them at tau_k = k pi / 2
 #pragma once
 
 #include <cstdint>
@@ -24,7 +32,7 @@ class LightModel {
  public:
   LightModel(const DepthCameraSheet& sheet, const DepthCameraErrors& errors, const TofEffects& effects, int threads);
 
-  // [sub-frame]. The scene is left as it is at the last one.
+  // One for each sub-frame. Afterwards the scene's bodies are where they were in the last of them.
   std::vector<LightImages> Expose(const TofView& view, const DepthSettings& settings, const FixedPattern& pattern,
                                   const Drift& drift) const;
   std::vector<SubFrame> SubFrames(const DepthSettings& settings) const;
@@ -51,10 +59,10 @@ class LightModel {
   Still TakeStill(const TofView& view) const;
   LightImages Expose(const Still& still, const Now& now, const FixedPattern& pattern, const Drift& drift) const;
   std::vector<Phasors> Bounce(const TofView& view, const Still& still, double frequency_hz, double integration_s) const;
-  struct RowRoom;
+  struct RowScratch;
   void ExposeRow(const Still& still, const Now& now, const FixedPattern& pattern, const Drift& drift, int v,
-                 RowRoom& room, LightImages& images) const;
-  void AddOffsets(double contrast, RowRoom& room) const;
+                 RowScratch& scratch, LightImages& images) const;
+  void AddOffsets(double contrast, RowScratch& scratch) const;
   bool Moves(const TofView& view) const;
   std::vector<std::uint8_t> Calm(const TofView& view, const MidHits& mid, const DepthSettings& settings) const;
 

@@ -70,8 +70,8 @@ Lights LightsOf(const RayScene& scene, const Optics& optics, const Pose& T_world
   return lights;
 }
 
-// Room to work in.
-struct Ways {
+// Scratch buffers.
+struct GatherScratch {
   std::vector<float> distance_m, electrons, phase, sine, cosine;  // [light]
   std::vector<Ray> rays;
   std::vector<std::size_t> of;  // [ray] its light
@@ -80,9 +80,9 @@ struct Ways {
 
 // Sum over the lights that reach a point: form factor of a disc, cos cos / (r^2 + A / pi) (Hanrahan's approximation).
 Phasors Gather(const RayScene& scene, const Lights& lights, const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
-               float wave_number, Ways& ways) {
+               float wave_number, GatherScratch& scratch) {
   const std::size_t count = lights.power.size();
-  auto& [distance_m, electrons, phase, sine, cosine, rays, of, blocked] = ways;
+  auto& [distance_m, electrons, phase, sine, cosine, rays, of, blocked] = scratch;
   for (std::vector<float>* of_lights : {&distance_m, &electrons, &phase, &sine, &cosine}) of_lights->resize(count);
   {
     const float px = point.x(), py = point.y(), pz = point.z(), nx = normal.x(), ny = normal.y(), nz = normal.z();
@@ -114,9 +114,9 @@ Phasors Gather(const RayScene& scene, const Lights& lights, const Eigen::Vector3
       sum.Add(electrons[i], cosine[i], sine[i]);
       continue;
     }
-    const Eigen::Vector3f way = Eigen::Vector3f(lights.x[i], lights.y[i], lights.z[i]) - point;
+    const Eigen::Vector3f to_light = Eigen::Vector3f(lights.x[i], lights.y[i], lights.z[i]) - point;
     rays.push_back({.origin = point + kClear_m * normal,
-                    .direction = way / distance_m[i],
+                    .direction = to_light / distance_m[i],
                     .max_range_m = distance_m[i] - 5.0f * kClear_m});
     of.push_back(i);
   }
@@ -215,13 +215,13 @@ std::vector<Phasors> OneBounce(const RayScene& scene, const Optics& optics, cons
   const Lights lights = LightsOf(scene, optics, mid.T_world_camera, albedo, grid);
   ReceiverGrid receivers(optics, grid);
   ParallelFor(receivers.rows, threads, [&](int j) {
-    Ways ways;
+    GatherScratch scratch;
     for (int i = 0; i < receivers.columns; ++i) {
       const std::size_t middle = optics.Middle(receivers.PixelOf(i, j, optics));
       if (mid.hits[middle].geom < 0) continue;
       const Eigen::Vector3f point = mid.Point(middle), normal = mid.hits[middle].normal;
       receivers.receivers[static_cast<std::size_t>(j * receivers.columns + i)] = {
-          point, normal, mid.hits[middle].geom, Gather(scene, lights, point, normal, wave_number, ways)};
+          point, normal, mid.hits[middle].geom, Gather(scene, lights, point, normal, wave_number, scratch)};
     }
   });
   std::vector<Phasors> bounce(optics.pixels());
@@ -241,9 +241,9 @@ std::vector<Phasors> OneBounce(const RayScene& scene, const Optics& optics, cons
   for (std::size_t pixel = 0; pixel < as.size(); ++pixel)
     if (alone[pixel] && as[pixel] == pixel) own.push_back(pixel);
   ParallelFor(static_cast<int>(own.size()), threads, [&](int k) {
-    Ways ways;
+    GatherScratch scratch;
     const std::size_t pixel = own[static_cast<std::size_t>(k)], middle = optics.Middle(pixel);
-    bounce[pixel] = Gather(scene, lights, mid.Point(middle), mid.hits[middle].normal, wave_number, ways);
+    bounce[pixel] = Gather(scene, lights, mid.Point(middle), mid.hits[middle].normal, wave_number, scratch);
   });
   for (std::size_t pixel = 0; pixel < as.size(); ++pixel) bounce[pixel] = bounce[as[pixel]];
   return bounce;

@@ -1,5 +1,6 @@
-// Light that comes to a pixel by way of one other surface: what the lamp lights are lamps themselves, in the manner of
-// reflective shadow maps; Bulczak, Lambers, Kolb, "Quantified, interactive simulation of AMCW ToF camera including
+// Light that reaches a pixel after one bounce. The surfaces that the lamp lights are treated as many small lamps
+// themselves (virtual lights, as in reflective shadow maps): each lights what the pixels see, unless something is between.
+// Their light has travelled farther than the direct light, so corners read too far. Bulczak, Lambers, Kolb, "Quantified, interactive simulation of AMCW ToF camera including
 // multipath effects", Sensors 18(1) 13 (2018).
 #pragma once
 
@@ -16,7 +17,7 @@ struct MultipathGrid {
 };
 
 // One bounce, for every pixel, for an albedo of 1 there and K T of 1: what a pixel gets is this times its albedo, lens,
-// K T, its phases turned by the way back to the lens (WayBack_rad of its own range). Taken at mid-exposure.
+// K T, its phases turned by the path back to the lens (half the phase of the pixel's own range). Taken at mid-exposure.
 std::vector<Phasors> OneBounce(const RayScene& scene, const Optics& optics, const MidHits& mid,
                                std::span<const float> albedo, double wave_number_rad_per_m, const MultipathGrid& grid,
                                int threads);

@@ -1,4 +1,5 @@
-// The lens and lamp side of a camera: where its sub-rays look, and how bright each direction is lit and seen.
+// The lens and the lamp of a camera: the directions of its sub-rays (3 x 3 in a pixel), and how brightly each direction is
+// lit and seen.
 #pragma once
 
 #include <Eigen/Core>

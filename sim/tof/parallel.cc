@@ -14,7 +14,7 @@ namespace {
 constexpr std::chrono::microseconds kLookOut{500};
 
 template <class Condition>
-void LookOutFor(const Condition& condition) {
+void SpinUntil(const Condition& condition) {
   const auto end = std::chrono::steady_clock::now() + kLookOut;
   while (!condition() && std::chrono::steady_clock::now() < end) {
   }
@@ -44,7 +44,7 @@ class Crew {
       calls_.remove(&call);  // whoever has not joined by now finds nothing left to do
       waiting_ = static_cast<int>(calls_.size());
     }
-    LookOutFor([&] { return call.running == 0; });
+    SpinUntil([&] { return call.running == 0; });
     std::unique_lock lock(mutex_);
     returned_.wait(lock, [&] { return call.running == 0; });
   }
@@ -62,7 +62,7 @@ class Crew {
       lock.lock();
       if (--call.running == 0) returned_.notify_all();
       lock.unlock();
-      LookOutFor([&] { return waiting_ > 0; });
+      SpinUntil([&] { return waiting_ > 0; });
       lock.lock();
     }
   }

@@ -13,7 +13,7 @@ namespace merlin::sim {
 // the process' life: to start one takes as long as a small loop). Returns when all have returned. work must not throw.
 void OnSeveralThreads(int others, const std::function<void()>& work);
 
-// Calls work(i) once for each i in [0, count), on this thread and threads - 1 others. What a call throws comes out.
+// Calls work(i) once for each i in [0, count), on this thread and threads - 1 others. An exception of a call is rethrown here.
 template <class Work>
 void ParallelFor(int count, int threads, const Work& work) {
   if (threads <= 1 || count <= 1) {

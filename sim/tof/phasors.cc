@@ -14,7 +14,9 @@ constexpr float kNearest_m = 1e-3f;  // nothing is nearer to the pixel than its 
 using In = const float*;
 using Out = float*;
 
-inline float Larger(float a, float b) { return a > b ? a : b; }  // by value: std::max's references stand in the way
+inline float Larger(float a, float b) {
+  return a > b ? a : b;
+}  // by value: std::max returns a reference, which keeps the compiler from vectorising
 
 void GatherAlbedo(const RowHits& hits, const PhasorScale& scale, RowWork& work) {
   for (std::size_t i = 0; i < hits.geom.size(); ++i)
@@ -38,7 +40,7 @@ void LightFromLens(const RowHits& hits, const Optics& optics, std::size_t first,
   }
 }
 
-// Boards beside it: the way of their light is their mean, weighted: to second order in the difference what two phasors
+// Boards beside it: the path of their light is their weighted mean: to second order in the difference what two phasors
 // would give.
 void LightFromBoards(const RowHits& hits, const Optics& optics, std::size_t first, float scale, float wave_number,
                      RowWork& work) {
@@ -60,9 +62,9 @@ void LightFromBoards(const RowHits& hits, const Optics& optics, std::size_t firs
     const float from_left = lit_left[i] * Larger(-(nx[i] * left_x + in_y_and_z), 0.0f) / (left * left_2);
     const float from_right = lit_right[i] * Larger(-(nx[i] * right_x + in_y_and_z), 0.0f) / (right * right_2);
     const float both = 0.5f * (from_left + from_right);
-    const float way = 0.25f * (from_left * left + from_right * right) / Larger(both, 1e-30f);
+    const float from_board_m = 0.25f * (from_left * left + from_right * right) / Larger(both, 1e-30f);
     electrons[i] = scale * albedo[i] * seen[i] * both;
-    phase[i] = wave_number * (0.5f * range + way);
+    phase[i] = wave_number * (0.5f * range + from_board_m);
   }
 }
 
@@ -90,7 +92,7 @@ void AddExtra(const RowHits& hits, const Optics& optics, const PhasorScale& scal
   out.Add(i % static_cast<std::size_t>(optics.width), light);
 }
 
-// Adds width ways: electrons, cosine and sine of the first harmonic's phase.
+// Adds one light path to each of width pixels: electrons, cosine and sine of the first harmonic's phase.
 void AddWays(In electrons, In cosine, In sine, std::size_t width, PhasorRow& out) {
   const Out total_e = out.total_e.data();
   const Out re1 = out.re[0].data(), re3 = out.re[1].data(), re5 = out.re[2].data();

@@ -1,4 +1,5 @@
-// The light of a pixel as phasors: one sum over all the ways light takes to it, so that edges mix by themselves.
+// The light of a pixel as phasors: one sum over all the paths that light takes to it. A pixel that sees two surfaces at an
+// edge mixes their phases in this sum, as a real one does (flying pixels).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,12 +16,12 @@ namespace merlin::sim {
 
 constexpr std::array<int, 3> kHarmonics{1, 3, 5};  // even ones cancel in D_0 - D_2
 
-// Electrons of a sub-frame and sum N_i e^(j n phi_i) over its ways, n of kHarmonics.
+// Electrons of a sub-frame, and the sum of N_i e^(j n phi_i) over all light paths i, for n of kHarmonics.
 struct Phasors {
   float total_e = 0.0f;
   std::array<float, 3> re{}, im{};
 
-  // One way more: electrons and phase of the first harmonic.
+  // Adds one light path: its electrons, and the phase of the first harmonic.
   void Add(float electrons, float cosine, float sine);
   // Turns harmonic n by n times this phase.
   void Turn(double phase_rad);
@@ -49,7 +50,7 @@ struct PhasorRow {
   void Correlate(int k, const std::array<float, 3>& weights, float scale, std::span<float> out) const;
 };
 
-// Room to work in, of one row.
+// Scratch buffers for one row.
 struct RowWork {
   RowWork(std::size_t width, std::size_t per_pixel);
   std::vector<float> albedo, electrons, phase, sine, cosine;  // [sub-ray of the row]

@@ -1,4 +1,4 @@
-// Light that a pixel gets by way of a pane or a mirror: what is behind, what is mirrored, and the lamp itself.
+// Light that a pixel gets through a pane or from a mirror: what is behind the pane, what is mirrored, and the lamp itself.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace merlin::sim {
 
-// One return more of a sub-ray, taken at mid-exposure; in a sub-frame it lies beyond_m behind what the sub-ray meets
-// there, if that is still the same geom.
+// One further return of a sub-ray, traced at mid-exposure. In a sub-frame it lies beyond_m behind whatever the sub-ray
+// meets then, as long as that is the same geom.
 struct ExtraReturn {
   std::size_t sub_ray = 0;
   int geom = -1;               // the pane or mirror
   float beyond_m = 0.0f;       // unfolded length from there on
   float strength = 0.0f;       // electrons = K T / sub-rays strength / length^2
-  float ambient_share = 0.0f;  // of the ambient light of what is there, one way
+  float ambient_share = 0.0f;  // of the ambient light of what is there, on its path to the lens
   RayHit hit{};                // what is there
   Eigen::Vector3f point{0, 0, 0};
 };

@@ -1,4 +1,5 @@
-// Light that lens and chip throw to and fro: every pixel gets a little of all the others', phase and all (Kavli et al.,
+// Light that is reflected to and fro between lens and chip: every pixel gets a little of the light of all others, with
+// their phases (Kavli et al.,
 // "Modelling and compensating measurement errors caused by scattering in time-of-flight cameras", SPIE 7066, 2008).
 #pragma once
 

@@ -1,5 +1,5 @@
-// The sub-rays of all pixels as one picture, and where in it nothing but one plane is seen: near such places nothing
-// needs to be traced, because where a ray meets a plane is a matter of one division.
+// The sub-rays of all pixels as one picture, and the parts of it where only one plane is seen. There nothing needs to be
+// traced again when the camera moves a little: where a ray meets a known plane is one division.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ struct SubGrid {
   std::vector<std::size_t> row_begin, in_row;  // of the index
 };
 
-// [sub-ray] 1: all sub-rays up to reach away in x and y meet the same plane, or nothing, as it does; 0 near the picture's
-// edge.
+// For each sub-ray; 1: all sub-rays up to reach away in x and y meet the same plane as it does, or nothing as it does; 0
+// also near the picture's edge.
 std::vector<std::uint8_t> CalmSubRays(const SubGrid& grid, std::span<const RayHit> hits, int reach);
 
 // Range of a face along a unit direction.

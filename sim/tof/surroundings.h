@@ -1,4 +1,5 @@
-// What is around a time-of-flight camera besides geometry: materials in the near infrared, sun, sky and lamps.
+// What a time-of-flight camera needs to know of a room besides its geometry: materials in the near infrared, sun, sky and
+// lamps.
 #pragma once
 
 #include <mujoco/mujoco.h>

@@ -1,6 +1,21 @@
-// The time-of-flight camera: what the pixels of a PMD chip make of a scene. Sub-rays, sub-frames, phasors, taps, noise,
-// decoding, calibration. After Keller and Kolb, "Real-time simulation of time-of-flight sensors", Simul. Model. Pract.
-// Theory 17 (2009), and Lambers, Hoberg, Kolb, IEEE Sensors J. 15(7) (2015).
+// The time-of-flight camera: what the pixels of a PMD chip measure of a scene. The lamp's light is modulated; the phase of
+// what comes back tells how far it has travelled. A frame is four phase images (sub-frames) taken one after the other, so
+// whatever moves meanwhile is measured at four places. Each stage is a file of its own and reads as one step:
+//
+//   optics      where each sub-ray of a pixel looks, how bright the lamp is there
+//   hits        what the sub-rays meet, at mid-exposure and again in each sub-frame
+//   returns     further light: through panes, from mirrors, from retro-reflectors
+//   multipath   light that reaches a pixel after one bounce
+//   ambient     sun, sky and lamps
+//   phasors     the sum of all these per pixel, as amplitude and phase
+//   scatter     light that spreads within the lens
+//   chip        electrons, noise, saturation, converter: the two taps of a pixel
+//   decode      taps to range, amplitude, intensity and flags, less the factory calibration
+//
+// Frames: world (the room's), camera (optical: z forward, x right, y down). A range is measured along the ray.
+// After Keller and Kolb, "Real-time simulation of time-of-flight sensors", Simulation Modelling Practice and Theory 17
+// (2009), and Lambers, Hoberg, Kolb, "Simulation of time-of-flight sensors for evaluation of chip layout variants", IEEE
+// Sensors Journal 15(7) (2015).
 #pragma once
 
 #include <cstdint>
@@ -20,12 +35,12 @@ class TofCamera {
   ~TofCamera();
   TofCamera(TofCamera&&) noexcept;
 
-  // settings must be valid ones of the sheet. stamp: mid-exposure, since the camera was switched on. A pixel without a
-  // return is kInvalid, its range 0. A pixel's noise depends on (seed, index, pixel) alone. Same bits for any number of
-  // threads.
+  // settings must be valid ones of the sheet. stamp: mid-exposure, since the camera was switched on. A pixel that
+  // nothing returns light to is kInvalid, and its range is 0. A pixel's noise depends on (seed, index, pixel) alone. The
+  // bits are the same for any number of threads.
   DepthFrame Expose(const TofView& view, const DepthSettings& settings, Time stamp, std::uint64_t index) const;
 
-  // What that frame would be without errors, and what each effect does to it.
+  // What that frame would be without errors, and by how much each effect changes it.
   TofTruth Truth(const TofView& view, const DepthSettings& settings, Time stamp) const;
 
  private:

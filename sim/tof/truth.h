@@ -1,4 +1,4 @@
-// The truth beside a frame, for judges and people; the stack cannot reach it.
+// The truth about a frame, for tests and for people who study the camera. The stack cannot reach it.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a frame is taken of.
+// The scene that a frame is taken of, and how it and the camera move.
 #pragma once
 
 #include "sim/rays/ray_scene.h"

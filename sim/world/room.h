@@ -1,4 +1,4 @@
-// A room's MJCF as MuJoCo parses it, with MuJoCo's troubles turned into ours.
+// Reads a room's MJCF with MuJoCo, and turns MuJoCo's errors into ours.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -17,8 +17,8 @@ void SilenceMujoco();
 // The error of a room that MuJoCo refuses, with its line where MuJoCo's message knows it.
 InputError RoomError(const std::filesystem::path& room, const std::string& what, const std::string& mujoco_message);
 
-// Parsed, not compiled. Geoms named "curtain*" hang where the room has them, or leave nothing behind: neither camera
-// nor sun meets an open curtain. Silences MuJoCo. Throws InputError: no such file, no MJCF, a curtain to close where
+// Parsed, not compiled. Geoms named "curtain*" stay where the room has them, or are taken out: an open curtain stops
+// neither camera nor sun. Silences MuJoCo. Throws InputError: no such file, no MJCF, a curtain to close where
 // there is none.
 SpecPtr ReadRoom(const std::filesystem::path& room, bool curtain_closed);
 

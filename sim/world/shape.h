@@ -22,8 +22,8 @@ bool IsSeen(const mjModel* model, int geom);
 // Its name is floor*.
 bool IsFloor(const mjModel* model, int geom);
 
-// A plane that ends where it is seen to end: it has a size, is no floor*, and either collides with nothing or faces no
-// way up. MuJoCo's own planes, and so all others, have no end for what touches them.
+// A plane that ends where it is seen to end: it has a size, is no floor*, and either collides with nothing or does
+// not face up. MuJoCo's own planes, and so all others, are infinite for what touches them.
 bool IsPanel(const mjModel* model, const mjData* data, int geom);
 
 // Points on the geom's surface, a grid of 2.5 cm, coarser where that would be more than 64 of them along an edge; an

@@ -1,4 +1,5 @@
-// What of a room the car touches: everything its cameras see, as they see it, and with the car's own contact values.
+// Which parts of a room the car touches: everything that its cameras see, in the shape in which they see it. In such a
+// contact only the car's own friction and stiffness count.
 #pragma once
 
 #include <mujoco/mujoco.h>

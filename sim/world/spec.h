@@ -1,4 +1,4 @@
-// What building in code on top of a room's MJCF needs: MuJoCo's own defaults, and names that are checked.
+// Helpers for code that adds elements to a room's MJCF: MuJoCo's own defaults, and names that are checked.
 #pragma once
 
 #include <mujoco/mujoco.h>

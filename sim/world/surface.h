@@ -1,4 +1,4 @@
-// How floors hold the car's tyres.
+// How much grip the car's tyres have on each floor.
 #pragma once
 
 #include <mujoco/mujoco.h>

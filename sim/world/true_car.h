@@ -1,8 +1,8 @@
-// The car as it truly is, where the twin is to differ from its description.
+// The car as it truly is: its description, with the differences that the scenario wants the stack not to know.
 #pragma once
 
 #include "robot/types/car.h"
-#include "sim/drive/drivetrain_config.h"
+#include "robot/types/drivetrain_config.h"
 
 namespace merlin::sim {
 

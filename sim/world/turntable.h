@@ -1,6 +1,6 @@
-// A stand that holds the car's wheels off the floor and turns it about the vertical through its base's origin
-// (CarDescription::T_base_stand): for rooms that are mapped from one place. It moves the car as it likes, whatever the
-// forces; itself it is neither seen nor touched.
+// A turntable that holds the car's wheels off the floor and turns the car about a vertical axis (the origin of
+// CarDescription::T_base_turntable), so that a room can be mapped from one place. It dictates the car's motion, whatever the
+// forces. The turntable itself cannot be seen or touched.
 #pragma once
 
 #include "robot/types/car.h"
@@ -9,27 +9,27 @@
 
 namespace merlin::sim {
 
-constexpr double kStandHeight_m = 0.05;  // of the wheels above the floor
+constexpr double kTurntableHeight_m = 0.05;  // of the wheels above the floor
 
 class Turntable {
  public:
   Turntable() = default;
-  // T_world_base: of the car on the stand, at angle 0.
+  // T_world_base: of the car on the turntable at angle 0.
   Turntable(const CarDescription& car, const Pose& T_world_base, double rate_rad_s)
-      : T_world_stand_(T_world_base * car.T_base_stand()),
-        T_stand_base_(car.T_base_stand().inverse()),
+      : T_world_table_(T_world_base * car.T_base_turntable()),
+        T_table_base_(car.T_base_turntable().inverse()),
         rate_rad_s_(rate_rad_s) {}
 
-  // Counter-clockwise seen from above, without end; not finite: ignored. It goes there at its rate.
+  // Counter-clockwise seen from above, any number of turns; not finite: ignored. It turns there at its rate.
   void Send(double angle_rad);
   void Step(Duration duration);
 
   double angle_rad() const { return angle_rad_; }
   double speed_rad_s() const { return speed_rad_s_; }  // during the last step
-  Pose T_world_base() const { return T_world_stand_ * FromXyYaw(0.0, 0.0, angle_rad_) * T_stand_base_; }
+  Pose T_world_base() const { return T_world_table_ * FromXyYaw(0.0, 0.0, angle_rad_) * T_table_base_; }
 
  private:
-  Pose T_world_stand_ = Pose::Identity(), T_stand_base_ = Pose::Identity();
+  Pose T_world_table_ = Pose::Identity(), T_table_base_ = Pose::Identity();
   double rate_rad_s_ = 0.0, target_rad_ = 0.0, angle_rad_ = 0.0, speed_rad_s_ = 0.0;
 };
 

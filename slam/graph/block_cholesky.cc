@@ -106,7 +106,7 @@ BlockCholesky<D>::BlockCholesky(const BlockPattern& pattern) : pattern_(pattern)
   for (const std::vector<int>& rows : pattern.below) L_.emplace_back(D * (1 + rows.size()), D);
 }
 
-// What an earlier column of L, from its index-th block on, takes from a later one: the outer product of its blocks.
+// Subtracts from a later column of L the outer product of the blocks of an earlier one, from its index-th block on.
 template <int D>
 void BlockCholesky<D>::Subtract(int from, int index, Panel& column) {
   const Panel& earlier = L_[from];

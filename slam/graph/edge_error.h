@@ -1,4 +1,5 @@
-// The error of one edge and its derivatives, in the space (SE(3)) and in the plane (SE(2)): two types of one shape.
+// The error of one edge and its derivatives, in space (SE(3)) and in the plane (SE(2)): two types with the same
+// members.
 //   E = measured^-1 (from^-1 to), error = (translation of E, rotation of E)
 // A pose moves by a step (translation, rotation) in its own frame: t += R v, R = R Exp(w). Then
 //   d error / d step of `to` = J, d error / d step of `from` = -J Adjoint((from^-1 to)^-1)
@@ -11,8 +12,8 @@
 
 namespace merlin {
 
-// What counts as the rotation of E in the plane: its angle, wrapped (g2o), or 2 sin(angle / 2), whose square is half of
-// |R - I|^2. In the space it is always the latter times the axis, twice the vector part of the quaternion.
+// The rotation of E in the plane: its angle, wrapped (as in g2o), or the chord 2 sin(angle / 2), whose square is half
+// of |R - I|^2. In space it is always the chord times the axis, which is twice the vector part of the quaternion.
 enum class PlanarRotation { kAngle, kChord };
 
 struct Spatial {

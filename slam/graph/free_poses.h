@@ -1,4 +1,4 @@
-// The poses that may move, numbered anew, and the edges that join two of them.
+// Numbers the poses of a graph that may move, and collects the edges that join two of them.
 #pragma once
 
 #include <cassert>

@@ -25,7 +25,7 @@ constexpr double kUnitTolerance = 1e-5;  // files of six digits stay below
 constexpr double kShortestQuaternion = 1e-6;
 constexpr double kIndefiniteTolerance = 1e-9;  // of the largest eigenvalue: rounding in a file of nine digits
 constexpr std::array<std::string_view, 5> kTags{"VERTEX_SE2", "EDGE_SE2", "VERTEX_SE3:QUAT", "EDGE_SE3:QUAT", "FIX"};
-// g2o's edges that are measured from a sensor's place on the robot, which a PARAMS line gives.
+// g2o's edges that are measured from the mounting pose of a sensor, which a PARAMS line gives.
 constexpr std::array<std::string_view, 10> kTagsWithParameters{
     "EDGE_SE2_OFFSET",     "EDGE_SE2_POINTXY_OFFSET", "EDGE_SE3_OFFSET",    "EDGE_SE3_PRIOR",    "EDGE_SE3_TRACKXYZ",
     "EDGE_SE3_LOTSOF_XYZ", "EDGE_PROJECT_DISPARITY",  "EDGE_PROJECT_DEPTH", "EDGE_PROJECT_P2MC", "EDGE_PROJECT_P2SC"};
@@ -102,7 +102,7 @@ class Reader {
     } while (!fields.AtEnd());
   }
 
-  // What is refused later in the line keeps its ids, so that no other line is blamed for them.
+  // Keeps the ids of a line with a later fault, so that no other line is blamed for them.
   void ReadVertex(TextFields& fields, std::size_t number) {
     vertices_.push_back({.id = fields.Whole("the pose's id"), .line = number});
     vertices_.back().T_map_pose = ReadPose(fields, number);
@@ -185,7 +185,7 @@ class Reader {
     indices.erase(repeated.begin(), repeated.end());
   }
 
-  // Without VERTEX lines each part has a frame of its own, in which one pose at most is known.
+  // Without VERTEX lines each part has its own frame, in which at most one pose is known.
   void PlaceParts() {
     std::vector<GraphPart> parts = PartsOf(file_.graph);
     if (!file_.has_poses) {
@@ -233,7 +233,7 @@ class Reader {
 
   const std::string& name_;
   FaultList faults_;
-  bool lost_vertex_ = false;  // a line was refused that may have been a pose: which edges lack one is not known
+  bool lost_vertex_ = false;  // a refused line may have been a pose, so missing poses are no faults of other lines
   G2oFile file_;
   std::optional<bool> planar_;
   std::vector<Vertex> vertices_, fixed_;

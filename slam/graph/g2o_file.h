@@ -1,9 +1,10 @@
-// The text format of g2o (R. Kuemmerle et al., "g2o: a general framework for graph optimization", ICRA 2011):
+// Reads and writes the text format of g2o (R. Kuemmerle et al., "g2o: a general framework for graph optimization", ICRA
+// 2011):
 //   VERTEX_SE2 id x y yaw                   VERTEX_SE3:QUAT id x y z qx qy qz qw
 //   EDGE_SE2 from to x y yaw I11 I12 I13 I22 I23 I33
 //   EDGE_SE3:QUAT from to x y z qx qy qz qw I11 I12 ... I66   (over translation and vector part of the quaternion)
 //   FIX id ...                              # comment
-//   PARAMS_... (sensors' places, which none of these edges uses; ignored)
+//   PARAMS_... (mounting poses of sensors, which none of these edges uses; ignored)
 #pragma once
 
 #include <cstdint>
@@ -22,15 +23,16 @@ struct G2oFile {
   std::vector<std::string> warnings{};  // one sentence each, with lines
 };
 
-// Reads the whole text; name: the file's, for the errors. Throws InputError with every fault, each with name and line:
-// a tag that is none of the above, a field that is missing, too much, no number or beyond 1e9 m and 1e15 of
-// information, a quaternion of no length, an edge from a pose to itself or to one that is not there, a second VERTEX of
-// one id, planar and spatial lines mixed; and for no edge at all. Warns of, and mends, quaternions off unit length
-// (then normalised) and information matrices that are not positive semidefinite (then the nearest that is). Warns of
-// edges said twice and of parts that no edge joins (parts.h).
+// Parses the whole text; name: the file's, for the messages. Throws InputError with every fault, each with name and
+// line:
+//   - a tag that is none of the above; planar and spatial lines in one file
+//   - a field that is missing, superfluous, no number, or too large (1e9 m, 1e15 of information); a quaternion of length 0
+//   - an edge from a pose to itself, or to one that does not exist; a second VERTEX with the same id; no edge at all
+// Repairs, with a warning, quaternions that are not of unit length (normalised) and information matrices that are not
+// positive semidefinite (replaced by the nearest that is). Warns of repeated edges, and of parts that no edge joins.
 G2oFile ParseG2o(std::string_view text, const std::string& name);
 
-// Numbers so that they read back as the same bits (the information of rotations: once divided and multiplied by 4).
+// Writes numbers so that they read back as the same bits (the information of rotations is divided and multiplied by 4).
 std::string ToG2o(const G2oFile& file);
 
 }  // namespace merlin

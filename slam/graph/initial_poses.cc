@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kFixed = FreePoses::kFixed;
 
-// The nearest rotation (Frobenius norm).
+// The rotation nearest to M in the Frobenius norm.
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& M) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d signs(1.0, 1.0, 1.0);
@@ -23,7 +23,7 @@ Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& M) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-// Least squares over one block of unknowns a pose: sum of weight |x_to - M x_from - c|^2, M orthogonal.
+// Least squares with one block of unknowns per pose: sum of weight |x_to - M x_from - c|^2, M orthogonal.
 template <int D>
 class LinearNetwork {
  public:
@@ -33,7 +33,7 @@ class LinearNetwork {
   LinearNetwork(const FreePoses& free, const BlockPattern& pattern)
       : free_(free), pattern_(pattern), A_(pattern), b_(Eigen::MatrixXd::Zero(D * free.count, 3)) {}
 
-  // The values count where the pose is fixed.
+  // x_from and x_to are used where the pose is fixed.
   void Add(const GraphEdge& edge, double weight, const Block& M, const Value& c, const Value& x_from,
            const Value& x_to) {
     const int from = free_.row[edge.from], to = free_.row[edge.to];
@@ -103,7 +103,7 @@ std::optional<std::vector<Pose>> ChordalPoses(const PoseGraph& graph) {
   const FreePoses free(graph);
   const BlockPattern pattern = MakePattern(free.count, free.pairs);
 
-  // Unknown is R^T of each pose: the rows of R_to - R_from R_from_to do not mix.
+  // The unknowns are R^T of each pose: the rows of R_to - R_from R_from_to are independent.
   LinearNetwork<3> rotations(free, pattern);
   LinearNetwork<1> translations(free, pattern);
   std::vector<IsotropicWeights> weights;

@@ -1,4 +1,4 @@
-// First guesses for a graph whose poses are unknown or bad.
+// Initial poses for a graph whose own are unknown or bad.
 #pragma once
 
 #include <optional>
@@ -8,14 +8,14 @@
 
 namespace merlin {
 
-// Poses along the edges, from the fixed ones on, over the spanning tree whose edges join the nearest indices: the chain
-// of odometry where there is one. Poses that no edge reaches stay.
+// Chains the edges, starting at the fixed poses, along the spanning tree whose edges join the nearest indices: that is
+// the chain of odometry where there is one. Poses that no edge reaches stay.
 std::vector<Pose> ChainedPoses(const PoseGraph& graph);
 
-// Chordal initialisation (L. Carlone et al., "Initialization techniques for 3D SLAM", ICRA 2015): the matrices that
-// minimise the rotations' part of objective A, the nearest rotations to them, then the translations that minimise the
-// rest. Fixed poses stay. Nothing where that has no single answer (some pose is not joined to the fixed ones, or by
-// edges without weight).
+// Chordal initialisation (L. Carlone et al., "Initialization techniques for 3D SLAM", ICRA 2015). First the matrices
+// that minimise the rotational part of objective A, and the rotations nearest to them; then the translations that
+// minimise the rest. Fixed poses stay. Nothing where there is no unique solution: some pose is not joined to the fixed
+// ones, or only by edges without weight.
 std::optional<std::vector<Pose>> ChordalPoses(const PoseGraph& graph);
 
 }  // namespace merlin

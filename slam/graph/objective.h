@@ -11,21 +11,22 @@ namespace merlin {
 
 enum class Objective { kA, kB };
 
-// Weights of an edge in A, from the information matrices of its translation and rotation as a g2o file has them:
-// tau = 2 / tr(It^-1), kappa = I33 in the plane; tau = 3 / tr(It^-1), kappa = 3 / (2 tr(Ir^-1)) in the space. Zero for
-// a singular matrix.
+// Weights of an edge in A, from the information matrices It and Ir of translation and rotation as in a g2o file:
+// tau = 2 / tr(It^-1), kappa = I33 in the plane; tau = 3 / tr(It^-1), kappa = 3 / (2 tr(Ir^-1)) in space. Zero for a
+// singular matrix.
 struct IsotropicWeights {
   double tau = 0.0, kappa = 0.0;
 };
 IsotropicWeights WeightsInA(const GraphEdge& edge, bool planar);
 
-// The information of an edge for the errors of edge_error.h, the planar one being the chord in A and the angle in B.
+// The information of an edge for the errors of edge_error.h. In the plane the rotation is the chord in A, the angle in
+// B.
 Matrix6d InformationIn(Objective objective, const GraphEdge& edge, bool planar);
 inline PlanarRotation PlanarRotationIn(Objective objective) {
   return objective == Objective::kA ? PlanarRotation::kChord : PlanarRotation::kAngle;
 }
 
-// The graph's value at its poses.
+// The value of the objective at the graph's poses.
 double Evaluate(const PoseGraph& graph, Objective objective);
 
 }  // namespace merlin

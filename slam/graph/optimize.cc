@@ -12,9 +12,9 @@
 namespace merlin {
 namespace {
 
-constexpr double kFirstDamping = 1e-12, kDampingFactor = 10.0;  // guesses; of H's diagonal
-constexpr double kDampingMax = 1e12;                            // beyond it a step moves nothing
-constexpr double kConvergedDamping = 1e-6;                      // beyond it a small step says little
+constexpr double kFirstDamping = 1e-12, kDampingFactor = 10.0;  // shares of H's diagonal; guesses
+constexpr double kDampingMax = 1e12;                            // beyond it a step moves no pose
+constexpr double kConvergedDamping = 1e-6;                      // beyond it a small step does not mean convergence
 constexpr double kFactor_bytes_max = 4e9;
 
 template <class Group>
@@ -106,12 +106,12 @@ class GraphProblem {
       if (from != FreePoses::kFixed && to != FreePoses::kFixed)
         H_.AddOff(pattern_, pair++, {.row = from, .column = to}, H_from_to);
     }
-    for (Matrix& block : H_.diagonal)  // a coordinate that no edge weighs stays
+    for (Matrix& block : H_.diagonal)  // a coordinate without weight in any edge stays
       for (double& value : block.diagonal())
         if (!(value > 0.0)) value = 1.0;
   }
 
-  // One step, damped as little as lets it improve the cost. False: there is none.
+  // One step, with the least damping that improves the cost. False: no damping does.
   bool Improve(double& damping, bool& converged) {
     for (; damping <= kDampingMax; damping = std::max(kFirstDamping, kDampingFactor * damping)) {
       if (!solver_.Factorize(H_, damping)) continue;
@@ -124,7 +124,7 @@ class GraphProblem {
       const bool small = expected <= config_.improvement_min * cost_ + 1e-12;
       if (!(cost <= cost_)) {
         if (!small) continue;
-        converged = true;  // what is left to gain is less than rounding
+        converged = true;  // a further gain would be less than rounding
         return true;
       }
       converged = small && damping <= kConvergedDamping;

@@ -1,6 +1,7 @@
-// The poses that agree best with a graph's edges: Gauss-Newton on the poses' manifold, damped (Levenberg, Marquardt)
-// where a whole step would not improve, analytic derivatives, sparse Cholesky. One thread: the same bits for the same
-// input.
+// Finds the poses that agree best with the edges of a graph: Gauss-Newton on the manifold of the poses, with analytic
+// derivatives and a sparse Cholesky factorisation. Where a whole step would not improve the objective it is damped, as
+// by Levenberg and Marquardt (J. Nocedal and S. Wright, "Numerical optimization", 2006, section 10.3). It uses one
+// thread, and gives the same bits for the same input.
 #pragma once
 
 #include <atomic>
@@ -14,7 +15,7 @@ namespace merlin {
 
 struct OptimizeConfig {
   int iterations_max = 100;        // [0, 1e6]
-  double improvement_min = 1e-10;  // [0, 1] share of the objective; a step expected to improve it by less ends it
+  double improvement_min = 1e-10;  // [0, 1] share of the objective; ends where a step is expected to improve it by less
 };
 
 template <class Visitor>
@@ -30,8 +31,8 @@ struct OptimizeResult {
   bool converged = false;  // false: the last iterate, no worse than the start
 };
 
-// Starts at the graph's poses. stop: checked before each iteration. A graph without edges, or whose numbers are not finite, is returned as it came. Throws MachineError where
-// the equations would not fit into memory.
+// Starts at the graph's poses. stop: checked before each iteration. A graph without edges, or with numbers that are not
+// finite, keeps its poses. Throws MachineError where the equations would not fit into memory.
 OptimizeResult Optimize(const PoseGraph& graph, const OptimizeConfig& config, Objective objective = Objective::kB,
                         const std::atomic<bool>* stop = nullptr);
 

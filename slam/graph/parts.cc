@@ -6,7 +6,7 @@
 namespace merlin {
 namespace {
 
-// A number for each pose, the same for poses that a chain of edges joins.
+// A number per pose, equal for poses that are joined by a chain of edges (union-find).
 std::vector<std::size_t> Roots(const PoseGraph& graph) {
   std::vector<std::size_t> parent(graph.poses.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});

@@ -1,4 +1,4 @@
-// A graph in which no chain of edges joins some poses to others: each part is a problem of its own.
+// Splits a graph into its connected components. Each is a problem of its own.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,12 @@
 namespace merlin {
 
 struct GraphPart {
-  PoseGraph graph{};                 // fixed: the part's own; empty: its first pose, as everywhere
+  PoseGraph graph{};                 // with the fixed poses that lie in this part
   std::vector<std::size_t> poses{};  // their indices in the whole graph, ascending
 };
 
-// The parts by their first pose, poses and edges in the whole graph's order. A pose without any edge is a part.
+// The parts in the order of their first poses; poses and edges keep their order. A pose without edges is a part of its
+// own.
 std::vector<GraphPart> PartsOf(const PoseGraph& graph);
 
 // Copies the part's poses into the whole graph.

@@ -1,4 +1,5 @@
-// Information matrices as they must be. Compiled once: Eigen's solver costs a compiler 5 s a file.
+// Repairs information matrices that are not positive semidefinite. A file of its own, because Eigen's eigenvalue solver
+// takes 5 s to compile.
 #pragma once
 
 #include <optional>
@@ -7,8 +8,8 @@
 
 namespace merlin {
 
-// Nothing for a symmetric matrix that is positive semidefinite: no eigenvalue below -tolerance of the largest, in magnitude.
-// Else the nearest that is (in Frobenius' norm): negative eigenvalues set to zero.
+// Nothing for a symmetric matrix that is positive semidefinite: no eigenvalue is below -tolerance times the largest
+// magnitude. Otherwise the nearest matrix that is, in the Frobenius norm: its negative eigenvalues are set to zero.
 std::optional<Matrix6d> MadeSemidefinite(const Matrix6d& symmetric, double tolerance);
 
 }  // namespace merlin

@@ -10,13 +10,13 @@
 namespace merlin {
 namespace {
 
-constexpr std::size_t kFormerMax = 15;  // key frames that the former map is made of, every second of the nearest
-constexpr double kThin_m = 0.08;        // edge of the cubes that they give one point each of
+constexpr std::size_t kFormerMax = 15;  // key frames in the former map: every second of the nearest
+constexpr double kThin_m = 0.08;        // each of them gives one point per voxel of this edge
 constexpr double kCoarse_m = 0.4, kFine_m = 0.1;
 constexpr int kIterations = 30;
-constexpr double kStep = 2e-3;  // m and rad: pairs that change to and fro hold a fit from ending more finely
+constexpr double kStep = 2e-3;  // m and rad; alternating pairs keep a fit from converging more finely
 
-// Indices of earlier visits' key frames that look at the same place, nearest view first.
+// Indices of key frames of earlier visits that see the same place, nearest view first.
 std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const Pose& T_map_base, double path_m,
                                      const LoopConfig& config) {
   const Eigen::Vector2d centre = ViewCentre(T_map_base);
@@ -35,7 +35,7 @@ std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const 
   return indices;
 }
 
-// One map of them all, and a second, coarser one.
+// Adds the key frames to a fine map and a coarse one.
 void AddTo(VoxelMap& fine, VoxelMap& coarse, std::span<const Keyframe> keyframes,
            const std::vector<std::size_t>& indices) {
   std::vector<std::vector<Point>> thin;
@@ -65,7 +65,7 @@ std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<cons
   Vector6d sigma;
   sigma << config.start_sigma_m, config.start_sigma_m, 0.01, 0.005, 0.005, config.start_sigma_rad;
   prior.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
-  // Coarse first: a point finds its surface up to a voxel's edge away, whatever the walls' distance the estimate is off.
+  // Coarse first: there a point finds its surface from as far away as a voxel's edge.
   VoxelMap coarse({.voxel_m = kCoarse_m}), fine({.voxel_m = kFine_m});
   AddTo(fine, coarse, keyframes, former);
   const IcpConfig wide{.iterations_max = kIterations,
@@ -74,8 +74,8 @@ std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<cons
                        .map_sigma_m = 0.1 * kCoarse_m};
   const IcpConfig narrow{.iterations_max = kIterations, .step_converged = kStep};
   const RegisterResult guess = Register(points_base, Eigen::Vector3f::Zero(), coarse, prior, wide);
-  if (guess.inliers < wide.inliers_min) return std::nullopt;  // where it ends, to and fro, does not matter yet
-  prior.information /= 4.0;                                   // it has done its work: the shape decides
+  if (guess.inliers < wide.inliers_min) return std::nullopt;  // it need not have converged
+  prior.information /= 4.0;                                   // from here on the shape decides
   const PosePrior refined{guess.T_map_base, Matrix6d(prior.information)};
   const RegisterResult fit = Register(points_base, Eigen::Vector3f::Zero(), fine, refined, narrow);
   if (!fit.converged || fit.rms_m > config.rms_max_m) return std::nullopt;

@@ -1,4 +1,6 @@
-// Recognises a place that was mapped long before: by where it lies, then by its shape.
+// Recognises a place that was mapped on an earlier visit. First it selects key frames whose view lies near the present
+// one. Then it registers the newest points against their map: coarsely, then finely. The place is recognised where
+// enough points meet the map, lie on its surfaces, and tell the position in both directions.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +14,33 @@
 namespace merlin {
 
 struct LoopConfig {
-  bool enabled = true;         // off: the map is left as it was driven
-  double apart_m = 12.0;       // [1, 1e4] driven between two visits; less is no loop
-  double every_m = 0.25;       // [0.05, 100] driven between two searches
-  double every_known_m = 2.0;  // [0.05, 2.5] and where a former visit was just recognised
-  double reach_m = 1.5;        // [0.1, 100] between the middles of two views of one place...
-  double reach_share = 0.01;   // [0, 1] ...and this share of the way since the former, which the estimate may be off by
-  double turn_rad = 0.8;       // [0.01, 3.2] between their directions
-  double start_sigma_m = 0.3;  // [0.001, 10] the estimate's error before it is compared; guess
-  double start_sigma_rad = 0.02;  // [1e-4, 3] and of its direction; guess
-  double overlap_min = 0.15;  // [0, 1] of its points must lie near the former map: of a loop's first frames little does
-  double on_surface_min = 0.65;  // [0, 1] and of those on its surfaces, not before or behind them
-  double rms_max_m = 0.035;      // [1e-3, 1] of their distances from it
-  double sigma_max_m = 0.05;     // [1e-3, 10] the shape must tell the place this well in both directions
-  int agreeing_min = 2;          // [1, 100] searches in a row whose corrections agree make a loop
-  double agreeing_m = 0.05;      // [1e-3, 10] within this, and the same number of rad
-  double strain_max = 30.0;      // [1, 1e6] chi2 that it may add to ways and headings: 99.99 % of 6 degrees of freedom
-  double path_sigma_m_per_sqrt_m = 0.012;    // [1e-5, 1] of the way between key frames, by its root; guess
-  double turn_sigma_rad_per_sqrt_m = 0.002;  // [1e-5, 1] of its direction; guess
-  double loop_sigma_m = 0.01;                // [1e-4, 10] of a loop, and at least; guess
-  double loop_sigma_rad = 0.003;             // [1e-5, 1]
-  double heading_sigma_rad = 0.02;           // [1e-4, 3] of one key frame's heading: neighbours err alike; guess
+  bool enabled = true;  // false: the map stays as it was driven
+
+  // When and where to search.
+  double apart_m = 12.0;       // [1, 1e4] distance driven between two visits; less is no loop
+  double every_m = 0.25;       // [0.05, 100] distance driven between two searches...
+  double every_known_m = 2.0;  // [0.05, 2.5] ...and between two where a former visit was just recognised
+  double reach_m = 1.5;        // [0.1, 100] between the centres of two views of one place,...
+  double reach_share = 0.01;   // [0, 1] ...plus this share of the distance driven since: the drift of the estimate
+  double turn_rad = 0.8;       // [0.01, 3.2] between the directions of two views of one place
+
+  // When a place is recognised.
+  double start_sigma_m = 0.3;     // [0.001, 10] one sigma of the estimated position before registration; guess
+  double start_sigma_rad = 0.02;  // [1e-4, 3] and of its yaw; guess
+  double overlap_min = 0.15;      // [0, 1] share of the points near the former map; little at the start of a loop
+  double on_surface_min = 0.65;   // [0, 1] share of those that lie on its surfaces, not before or behind them
+  double rms_max_m = 0.035;       // [1e-3, 1] of the inliers' distances from it
+  double sigma_max_m = 0.05;      // [1e-3, 10] one sigma of the position, in the direction that is known worst
+  int agreeing_min = 2;           // [1, 100] searches in a row must agree on the correction
+  double agreeing_m = 0.05;       // [1e-3, 10] within this distance, and the same number of rad
+  double strain_max = 30.0;       // [1, 1e6] chi2 that the loop may add to the graph: 99.99 % with 6 degrees of freedom
+
+  // Weights of the graph of key frames: standard deviations.
+  double path_sigma_m_per_sqrt_m = 0.012;    // [1e-5, 1] of a step between key frames, by the root of its length; guess
+  double turn_sigma_rad_per_sqrt_m = 0.002;  // [1e-5, 1] of its turn; guess
+  double loop_sigma_m = 0.01;                // [1e-4, 10] of a loop, added to what registration says; guess
+  double loop_sigma_rad = 0.003;             // [1e-5, 1] the same for its turn; guess
+  double heading_sigma_rad = 0.02;  // [1e-4, 3] of a key frame's heading; large, because neighbours err alike; guess
 };
 
 template <class Visitor>
@@ -61,14 +69,14 @@ void Visit(Visitor& v, LoopConfig& c) {
 }
 
 struct Loop {
-  std::size_t former = 0;                  // the key frame it was recognised by
-  Pose T_map_base = Pose::Identity();      // where the former map has the present frame
+  std::size_t former = 0;                  // index of the key frame that recognised the place
+  Pose T_map_base = Pose::Identity();      // the present frame, as registered against the former map
   Matrix6d covariance = Matrix6d::Zero();  // over (translation, rotation) in the base frame
   double overlap = 0.0;                    // share of points near the former map
 };
 
-// points_base: what was seen of late, in the present frame. Nothing: no key frame of an earlier visit sees the place, or
-// the shapes do not fit, or do not tell where along them the car is.
+// points_base: the newest points, in the present frame. Nothing where no key frame of an earlier visit sees the place,
+// or the shapes do not fit, or do not determine the position.
 std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
                              const Pose& T_map_base, double path_m, const LoopConfig& config);
 

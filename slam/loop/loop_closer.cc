@@ -7,8 +7,8 @@
 namespace merlin {
 namespace {
 
-constexpr double kLeastWay_m = 0.01;     // of a turn on the spot
-constexpr double kSameKeyframe_m = 0.3;  // so soon after the newest key frame a loop is one of it
+constexpr double kShortestStep_m = 0.01;  // a turn on the spot counts as this long
+constexpr double kSameKeyframe_m = 0.3;   // up to this distance from the newest key frame a loop belongs to it
 
 Matrix6d DiagonalInformation(double sigma_m, double sigma_rad) {
   Vector6d sigma;
@@ -21,7 +21,7 @@ bool Agree(const Pose& a, const Pose& b, const Eigen::Vector3d& at, double withi
   return (a * at - b * at).norm() < within && std::abs(Yaw(apart)) < within;
 }
 
-// As measured between the newest key frame and a former one.
+// The loop, as an edge from the former key frame to the newest.
 GraphEdge EdgeOf(std::span<const Keyframe> keyframes, const Loop& loop, const Pose& T_map_base,
                  const LoopConfig& config) {
   const Pose T_base_newest = T_map_base.inverse() * keyframes.back().T_map_base;
@@ -33,7 +33,7 @@ GraphEdge EdgeOf(std::span<const Keyframe> keyframes, const Loop& loop, const Po
   return edge;
 }
 
-// The new poses in the plane, height and tilt as before.
+// The solved poses in the plane, with height, roll and pitch as before.
 std::vector<Pose> InPlane(std::span<const Keyframe> keyframes, const std::vector<Pose>& solved) {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
@@ -70,39 +70,39 @@ std::optional<std::vector<Pose>> LoopCloser::Search(std::span<const Keyframe> ke
     recognised_m_ = path_m;
     return std::nullopt;
   }
-  PoseGraph network = Network(keyframes);
-  const double before = Evaluate(network, Objective::kB);
-  network.edges.push_back(EdgeOf(keyframes, *loop, T_map_base, config_));
-  const OptimizeResult solved = Optimize(network, {});
+  PoseGraph graph = Graph(keyframes);
+  const double before = Evaluate(graph, Objective::kB);
+  graph.edges.push_back(EdgeOf(keyframes, *loop, T_map_base, config_));
+  const OptimizeResult solved = Optimize(graph, {});
   if (!solved.converged || solved.objective - before > config_.strain_max) return std::nullopt;
   recognised_m_ = path_m;
-  loops_.push_back(network.edges.back());
-  correction_ = Pose::Identity();  // the map will have it
+  loops_.push_back(graph.edges.back());
+  correction_ = Pose::Identity();  // the caller corrects the map
   return InPlane(keyframes, solved.poses);
 }
 
-// The key frames, and last a pose at the map's origin that headings are measured from.
-PoseGraph LoopCloser::Network(std::span<const Keyframe> keyframes) const {
-  PoseGraph network;
-  network.planar = true;
+// Its poses are the key frames, then one at the map's origin, from which headings are measured.
+PoseGraph LoopCloser::Graph(std::span<const Keyframe> keyframes) const {
+  PoseGraph graph;
+  graph.planar = true;
   const std::size_t world = keyframes.size();
-  network.fixed = {0, world};
+  graph.fixed = {0, world};
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     const Keyframe& keyframe = keyframes[i];
-    network.poses.push_back(keyframe.T_map_base);
+    graph.poses.push_back(keyframe.T_map_base);
     if (i == 0) continue;
-    const double root = std::sqrt(std::max(keyframe.path_m - keyframes[i - 1].path_m, kLeastWay_m));
-    network.edges.push_back(
+    const double root = std::sqrt(std::max(keyframe.path_m - keyframes[i - 1].path_m, kShortestStep_m));
+    graph.edges.push_back(
         {i - 1, i, keyframe.T_previous_base,
          DiagonalInformation(config_.path_sigma_m_per_sqrt_m * root, config_.turn_sigma_rad_per_sqrt_m * root)});
     if (!keyframe.yaw_rad) continue;
     Matrix6d heading = Matrix6d::Zero();
     heading(5, 5) = 1.0 / (std::pow(config_.heading_sigma_rad, 2) + std::pow(keyframe.yaw_sigma_rad, 2));
-    network.edges.push_back({world, i, FromXyYaw(0.0, 0.0, *keyframe.yaw_rad), heading});
+    graph.edges.push_back({world, i, FromXyYaw(0.0, 0.0, *keyframe.yaw_rad), heading});
   }
-  network.poses.push_back(Pose::Identity());
-  network.edges.insert(network.edges.end(), loops_.begin(), loops_.end());
-  return network;
+  graph.poses.push_back(Pose::Identity());
+  graph.edges.insert(graph.edges.end(), loops_.begin(), loops_.end());
+  return graph;
 }
 
 }  // namespace merlin

@@ -31,7 +31,7 @@ std::vector<Ray> RaysOf(const Observation& observation) {
   return rays;
 }
 
-// x level along the middle of the rays, z up; none: they have no such middle.
+// x level along the middle of the rays, z up. Nothing where they point to all sides.
 std::optional<Eigen::Matrix3f> LevelView(const std::vector<Ray>& rays) {
   Eigen::Vector2f middle = Eigen::Vector2f::Zero();
   for (const Ray& ray : rays) middle += ray.end.head<2>() / ray.end.norm();
@@ -77,7 +77,8 @@ ClearView::ClearView(const Observation& observation) : camera_base_(observation.
     low = low.min(tangents), high = high.max(tangents);
     if (ray.kind != Ray::Kind::kUnknown) reach_m_ = std::max(reach_m_, ray.end.norm());
   }
-  // One pixel a bin, about, and an empty border; what is kept is the four bins around each corner between bins.
+  // Bins with about one pixel each, and an empty border. What is kept is the minimum of the four bins around each
+  // corner.
   const float pitch = std::max(1e-3f, std::sqrt((high - low).prod() / static_cast<float>(rays.size())));
   const Eigen::Array2f origin = low - pitch;
   const Eigen::Array2<std::size_t> size = ((high - low) / pitch).cast<std::size_t>() + 3;

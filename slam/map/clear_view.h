@@ -1,4 +1,9 @@
-// How far one frame saw: a small range image of its rays, by which a map is asked what they passed through.
+// The free space that one frame saw: a small range image, with the length of the shortest ray around each direction.
+// With it a later step decides which voxels of a map the rays passed through (slam/map/moved_away.h).
+//
+//   frame  origin and axes
+//   base   the car, as everywhere
+//   view   the camera's optical centre; x level along the middle of the rays, z up
 #pragma once
 
 #include <Eigen/Core>
@@ -11,18 +16,17 @@ namespace merlin {
 
 class ClearView {
  public:
-  // The shortest ray of all around a direction.
+  // The shortest ray around a direction.
   struct Reach {
-    float length_m = 0.0f;  // 0: outside the view, or a pixel there does not tell
-    bool dark = false;      // one of them measured nothing, but would have, had something stood before the length
+    float length_m = 0.0f;  // 0: outside the view, or a pixel there has no known length
+    bool dark = false;      // one of the rays measured nothing, but would have measured a surface nearer than length_m
   };
 
-  ClearView() = default;  // saw nothing
-  // Of all pixels: those with a point, the free, saturated and unknown ones. Rays 60 deg or more off the level direction in which
-  // they look on the whole are left out, and what is not finite.
+  ClearView() = default;  // of a frame that saw nothing
+  // From all pixels: those with a point, the free, saturated and unknown ones. Rays that point 60 deg or more away from
+  // the x axis of the view are left out, and so are those that are not finite.
   explicit ClearView(const Observation& observation);
 
-  // p_view: in the frame of the view, with its origin in the camera, x level along the view, z up as the base's.
   Reach Along(const Eigen::Vector3f& p_view) const {
     if (!(p_view.x() > 0.0f)) return {};
     const float across = (p_view.y() / p_view.x() - left_) * per_bin_, up = (p_view.z() / p_view.x() - low_) * per_bin_;

@@ -9,39 +9,41 @@
 namespace merlin {
 namespace {
 
-constexpr float kBlock_m = 1.0f;   // square columns of voxels that are in sight, or not, together
-constexpr float kFloor_m = 0.06f;  // what is no higher may be floor
-constexpr int kMost = 2, kLeast = -3;
-constexpr float kAslant = 0.15f;     // cosine; flatter surfaces show behind themselves by the error of a pose...
-constexpr float kAslantDark = 0.3f;  // ...or send too little back: black rubber's albedo of 0.07 still does
+constexpr float kBlock_m = 1.0f;         // edge of the square columns of voxels that are tested for visibility together
+constexpr float kFloor_m = 0.06f;        // points up to this height may be floor
+constexpr int kMost = 2, kLeast = -3;    // bounds of a voxel's evidence
+constexpr float kObliqueMin = 0.15f;     // cosine; below it the error of a pose shows what is behind the surface
+constexpr float kObliqueDarkMin = 0.3f;  // cosine; below it dark surfaces return too little. Black rubber: albedo 0.07
 constexpr float kRange_m = 0.05f, kRangeShare = 0.03f, kPose_m = 0.05f;  // errors; guess
-constexpr float kBody_m = 0.04f;  // the car is narrower than its footprint, by the error of a pose
-constexpr float kReach_m = 0.1f;  // of its middle, before and behind: from one key frame to the next
+constexpr float kBody_m = 0.04f;  // the error of a pose, by which the car is taken narrower than its footprint
+constexpr float kReach_m = 0.1f;  // of the car's middle, to the front and rear: the distance of two key frames
 
-enum class Look { kNone, kThere, kThrough };
+enum class Finding { kNothing, kOccupied, kFree };
 
-// Of the angle between a surface and the ray to it, from the camera. Without a normal: steep enough, unless it may be floor.
+// Cosine of the angle between a surface's normal and the ray to it. Without a normal the surface counts as facing the
+// camera, unless it may be floor.
 float CosineOf(const Eigen::Vector3f& normal, const Eigen::Vector3f& ray, const Eigen::Vector3f& point_map) {
-  if (normal.isZero()) return point_map.z() < kFloor_m ? 0.0f : kAslantDark;
+  if (normal.isZero()) return point_map.z() < kFloor_m ? 0.0f : kObliqueDarkMin;
   return std::abs(normal.dot(ray)) / ray.norm();
 }
 
-Look LookAt(const ClearView::Reach& reach, float range_m, float cosine) {
-  if (reach.length_m == 0.0f || cosine < kAslant || (reach.dark && cosine < kAslantDark)) return Look::kNone;
+Finding Find(const ClearView::Reach& reach, float range_m, float cosine) {
+  if (reach.length_m == 0.0f || cosine < kObliqueMin || (reach.dark && cosine < kObliqueDarkMin))
+    return Finding::kNothing;
   const float margin_m = kRange_m + kRangeShare * range_m + kPose_m / cosine;
-  if (reach.length_m > range_m + margin_m) return Look::kThrough;
-  return !reach.dark && reach.length_m >= range_m - margin_m ? Look::kThere : Look::kNone;
+  if (reach.length_m > range_m + margin_m) return Finding::kFree;
+  return !reach.dark && reach.length_m >= range_m - margin_m ? Finding::kOccupied : Finding::kNothing;
 }
 
-// Evidence that something is there, as an occupancy grid's log odds: two for each sight of it, one less for each through it,
-// bounded so that three of these outweigh whatever was before.
-int Weighed(int evidence, Look look) {
-  if (look == Look::kThere) return std::min(evidence + 2, kMost);
-  if (look == Look::kThrough) return std::max(evidence - 1, kLeast);
+// Evidence that a voxel is occupied, like the log odds of an occupancy grid: two more for each view of it, one less for
+// each view through it. The bounds let three views through it outweigh everything before.
+int Weighed(int evidence, Finding finding) {
+  if (finding == Finding::kOccupied) return std::min(evidence + 2, kMost);
+  if (finding == Finding::kFree) return std::max(evidence - 1, kLeast);
   return evidence;
 }
 
-// The voxels of a column lie next to each other.
+// A column of voxels: a range in Blocks::voxels.
 struct Block {
   Eigen::Vector3f middle{0, 0, 0};  // of its points in the plane, at height 0
   std::size_t begin = 0, end = 0;
@@ -73,7 +75,7 @@ Blocks InBlocks(std::span<const Voxel> voxels) {
   return out;
 }
 
-// False only for blocks of which nothing is in sight. The view is level, or nearly so.
+// False only for blocks that lie outside the view. The view is level, or nearly so.
 bool MayBeSeen(const Eigen::Vector3f& middle_view, const ClearView& view) {
   constexpr float kRadius_m = 0.75f * kBlock_m;
   const float x = middle_view.x(), y = middle_view.y();
@@ -97,7 +99,7 @@ class Evidence {
         const ClearView::Reach reach = view.Along(R * all_.points[i] + t);
         if (reach.length_m == 0.0f) continue;
         const Eigen::Vector3f ray = all_.points[i] - camera_map, &normal = all_.normals[i];
-        weighed_[i] = Weighed(weighed_[i], LookAt(reach, ray.norm(), CosineOf(normal, ray, all_.points[i])));
+        weighed_[i] = Weighed(weighed_[i], Find(reach, ray.norm(), CosineOf(normal, ray, all_.points[i])));
       }
     }
   }
@@ -122,25 +124,26 @@ class Evidence {
   std::vector<int> weighed_;  // in the order of the blocks' voxels
 };
 
-// The room that the car passes through, off the floor. Its nose may go under something; what comes to its middle would have
-// met the camera's mast.
+// The volume that the middle of the car sweeps, above the floor. The car's front may go under something; what reaches
+// its middle would have hit the mast of the camera.
 Eigen::AlignedBox3f MiddleOf(const Footprint& footprint) {
   const auto half_m = static_cast<float>(footprint.half_width_m) - kBody_m;
   return {Eigen::Vector3f(-kReach_m, -half_m, kFloor_m),
           Eigen::Vector3f(kReach_m, half_m, static_cast<float>(footprint.height_m))};
 }
 
-struct PlacedSight {
-  const Sight* sight;
+struct ViewInMap {
+  const PlacedView* placed;
   Pose T_map_base;
 };
 
-std::vector<PlacedSight> InOrderOfTime(std::span<const Keyframe> keyframes) {
-  std::vector<PlacedSight> sights;
+std::vector<ViewInMap> InOrderOfTime(std::span<const Keyframe> keyframes) {
+  std::vector<ViewInMap> views;
   for (const Keyframe& keyframe : keyframes)
-    for (const Sight& sight : keyframe.sights) sights.push_back({&sight, keyframe.T_map_base * sight.T_keyframe_base});
-  std::ranges::stable_sort(sights, {}, [](const PlacedSight& placed) { return placed.sight->stamp; });
-  return sights;
+    for (const PlacedView& placed : keyframe.views)
+      views.push_back({&placed, keyframe.T_map_base * placed.T_keyframe_base});
+  std::ranges::stable_sort(views, {}, [](const ViewInMap& view) { return view.placed->stamp; });
+  return views;
 }
 
 }  // namespace
@@ -149,9 +152,9 @@ std::vector<bool> MovedAway(std::span<const Voxel> voxels, std::span<const Keyfr
                             const Footprint& footprint) {
   Evidence evidence(voxels);
   const Eigen::AlignedBox3f car_base = MiddleOf(footprint);
-  for (const PlacedSight& placed : InOrderOfTime(keyframes)) {
-    const Eigen::Isometry3f T_base_map = placed.T_map_base.inverse().cast<float>();
-    evidence.Add(placed.sight->view, T_base_map);
+  for (const ViewInMap& view : InOrderOfTime(keyframes)) {
+    const Eigen::Isometry3f T_base_map = view.T_map_base.inverse().cast<float>();
+    evidence.Add(view.placed->view, T_base_map);
     if (!car_base.isEmpty()) evidence.Sweep(car_base, T_base_map);
   }
   return evidence.Gone();

@@ -1,4 +1,6 @@
-// Which voxels hold something that is no longer there, or only passed by: other frames looked right through them.
+// Finds the voxels whose content is no longer there, or only passed by: other frames saw free space through them. A
+// simplified occupancy mapping (H. Moravec and A. Elfes, "High resolution maps from wide angle sonar", ICRA 1985), with
+// range images in place of cells.
 #pragma once
 
 #include <span>
@@ -10,10 +12,11 @@
 
 namespace merlin {
 
-// One a voxel, true: it moved away. All sights of the key frames are asked, in the order of time. What three in a row looked
-// through has gone; what came after such three must be seen twice to stay. A sight says nothing of a voxel that it does not
-// see, or has something before, or that lies along its rays (dark pixels: that does not face them rather well). What the
-// middle of the car passed through has gone too: low and near, where cameras do not see.
+// One entry per voxel; true: its content moved away. Takes all views of the key frames in the order of time. A voxel
+// through which three views in a row saw has moved away; what comes after these must be seen twice to stay. A view says
+// nothing about a voxel outside it, behind something else, or with a surface nearly parallel to its rays (for dark
+// pixels: one that does not face them well). Voxels that the middle of the car passed through have moved away too: they
+// are low and near, where cameras do not see.
 std::vector<bool> MovedAway(std::span<const Voxel> voxels, std::span<const Keyframe> keyframes,
                             const Footprint& footprint);
 

@@ -1,5 +1,5 @@
-// VoxelMap::Nearest for many points near each other, as a registration asks it: what lies around a cell is looked up
-// once.
+// VoxelMap::Nearest for many points near each other, as in a registration. The voxels around a cell are looked up once
+// and kept.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace merlin {
 
 class NearestSearch {
  public:
-  // The map must outlive it, and stay as it is. expected_points only makes room.
+  // The map must outlive this and must not change. expected_points only reserves memory.
   NearestSearch(const VoxelMap& map, std::size_t expected_points);
 
   // The same voxel as map.Nearest(point_map).

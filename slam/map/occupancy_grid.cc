@@ -7,11 +7,12 @@
 namespace merlin {
 namespace {
 
-// A hit weighs as much as four passes, and ten hits are the most that is remembered: what has gone is soon forgotten.
+// A hit weighs as much as four rays that pass. At most ten hits are remembered, so that what has gone is soon
+// forgotten.
 constexpr int kHit = 4;
 constexpr int kPass = -1;
 constexpr int kLimit = 40;
-constexpr double kFarthest_m = 100.0;  // no range is longer; a wrong one must not make the grid huge
+constexpr double kFarthest_m = 100.0;  // longer ranges are wrong, and would make the grid huge
 
 }  // namespace
 

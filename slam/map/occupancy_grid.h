@@ -1,4 +1,6 @@
-// What is free and what is not, seen from above: a grid of log odds that grows with what was seen.
+// Free and occupied ground, seen from above: a grid of log odds (H. Moravec and A. Elfes, "High resolution maps from
+// wide angle sonar", ICRA 1985). The cells along a ray become freer, the cell at its end more occupied where the point
+// is as high as an obstacle. The grid grows as needed. Map frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +17,8 @@ namespace merlin {
 struct OccupancyConfig {
   double cell_m = 0.05;        // [0.01, 1] edge
   double height_min_m = 0.08;  // [-1, 3] lower points are floor
-  double height_max_m = 1.2;   // [0, 10] higher ones are over the car
-  double sweep_rad = 0.1;      // [0, 1.5] rays steeper than this against the floor free nothing: they pass over things
+  double height_max_m = 1.2;   // [0, 10] higher points are above the car
+  double sweep_rad = 0.1;      // [0, 1.5] rays at a larger angle to the floor free no cells: they pass above obstacles
 };
 
 template <class Visitor>
@@ -32,7 +34,7 @@ class OccupancyGrid {
   enum class Cell : std::int8_t { kUnknown = -1, kFree = 0, kOccupied = 100 };  // values of ROS nav_msgs/OccupancyGrid
 
   explicit OccupancyGrid(const OccupancyConfig& config) : config_(config) {}
-  // camera_base: where the rays of the points began.
+  // camera_base: where the rays of the points begin.
   void Insert(std::span<const Point> points_base, const Eigen::Vector3f& camera_base, const Pose& T_map_base);
 
   Cell At(const Eigen::Vector2d& point_map) const;  // unknown outside
@@ -49,7 +51,7 @@ class OccupancyGrid {
 
   OccupancyConfig config_;
   int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;  // cells
-  std::vector<std::int8_t> log_odds_;             // 0: unknown; clamped to +-kLimit
+  std::vector<std::int8_t> log_odds_;             // row by row; 0: unknown; clamped to +-kLimit
 };
 
 }  // namespace merlin

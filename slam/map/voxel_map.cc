@@ -9,8 +9,8 @@
 namespace merlin {
 namespace {
 
-constexpr double kNearest_m = 0.5;  // views from nearer count as from there: one that errs should not decide alone
-constexpr double kGrazing = 0.01;   // cosine; so that whatever was seen has a colour
+constexpr double kNearest_m = 0.5;  // nearer views count as from here, so that a single wrong one does not decide
+constexpr double kGrazing = 0.01;   // least cosine, so that every voxel that was seen has a colour
 
 double WeightOf(const Point& point) { return 1e-4 / std::max<double>(point.sigma_m * point.sigma_m, 1e-6); }
 

@@ -1,5 +1,6 @@
-// A sparse map of cubic voxels. Each voxel keeps the weighted moments of the points that fell into it; with its 26
-// neighbours they give a surface: mean, normal, flatness. Points that are not finite, or beyond 1000 km, are left out.
+// A sparse map of cubic voxels, in the map frame. Each voxel keeps the weighted moments of the points that fell into
+// it. From its own and those of its 26 neighbours it has a surface: mean, and a normal where they are flat. Points that
+// are not finite, or beyond 1000 km, are left out.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +16,8 @@
 namespace merlin {
 
 struct VoxelMapConfig {
-  double voxel_m = 0.1;       // [0.005, 2] edge; larger is faster and reaches farther, smaller is sharper
-  double flatness_max = 0.1;  // [0, 1] smallest over middle eigenvalue of a neighbourhood that counts as a plane; guess
+  double voxel_m = 0.1;  // [0.005, 2] edge; larger: faster, and points find surfaces farther away; smaller: sharper
+  double flatness_max = 0.1;  // [0, 1] smallest over middle eigenvalue up to which a neighbourhood is a plane; guess
   int plane_points_min = 6;   // [3, 1000] points a neighbourhood needs for a plane; guess
 };
 
@@ -29,13 +30,13 @@ void Visit(Visitor& v, VoxelMapConfig& c) {
 
 struct Voxel {
   std::array<std::int32_t, 3> cell{};
-  int count = 0;                 // points that fell in
-  double weight = 0.0;           // their sum of 1 / sigma^2, 1 at 1 cm
+  int count = 0;                 // of points
+  double weight = 0.0;           // sum of their 1 / sigma^2, in units of 1 / cm^2
   Eigen::Vector3d sum{0, 0, 0};  // weighted, relative to the voxel's centre
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d bgr_sum{0, 0, 0};  // weighted by color_weight
   double color_weight = 0.0;         // 0: without colour
-  double last_seen_m = 0.0;          // path length at which a point last fell in
+  double last_seen_m = 0.0;          // distance driven when a point last fell in
   Eigen::Vector3f mean{0, 0, 0};     // in the map frame
   Eigen::Vector3f normal{0, 0, 0};   // unit, either sign; zero: the neighbourhood is no plane
   bool has_normal() const { return !normal.isZero(); }
@@ -43,7 +44,7 @@ struct Voxel {
   Eigen::Vector3d bgr() const { return bgr_sum / color_weight; }  // [0, 255]; of a voxel with colour
 };
 
-// What one frame saw, and from where.
+// The points of one frame, and its pose.
 struct PlacedPoints {
   std::span<const Point> points_base;
   Pose T_map_base = Pose::Identity();
@@ -53,30 +54,30 @@ class VoxelMap {
  public:
   explicit VoxelMap(const VoxelMapConfig& config) : config_(config) {}
 
-  // path_m: length driven so far, remembered as the voxels' last_seen_m.
+  // path_m: distance driven so far; becomes the last_seen_m of the voxels.
   void Insert(std::span<const Point> points_base, const Pose& T_map_base, double path_m);
-  // As one Insert after the other, with the same bits, but a voxel's surface is computed only once: after the last frame
-  // that has points in it.
+  // The same as one Insert after the other, bit by bit, but faster: a voxel's surface is computed once, after the last
+  // frame that has points in it.
   void InsertAll(std::span<const PlacedPoints> frames, double path_m);
-  // Colours from the points that have one, for the voxels there are: the best views decide. One weighs (cos(incidence) /
-  // distance^2)^2, which is the square of how many pixels there are to an area, so that few frames from near and in front
-  // outweigh many from far and aslant. A voxel that is no plane counts as facing. camera_base: where the rays begin.
+  // Colours the existing voxels by the points that have a colour. A point weighs (cos(incidence) / distance^2)^2, the
+  // square of the number of pixels per area, so that few near frontal views outweigh many far oblique ones. A voxel
+  // without a normal counts as facing the camera. camera_base: where the rays begin.
   void Paint(std::span<const Point> points_base, const Eigen::Vector3f& camera_base, const Pose& T_map_base);
   // Forgets voxels last seen before path_m.
   void ForgetBefore(double path_m);
-  // Forgets those that are true, one a voxel. Normals of what stood beside them stay.
+  // Forgets voxels by a flag each; the normals of their neighbours stay.
   void Forget(const std::vector<bool>& voxels);
 
-  // The voxel with a normal whose mean is nearest, among the point's own and the 26 around it; null: none.
-  // For many points near each other: slam/map/nearest_search.h.
+  // The voxel with a normal whose mean is nearest, among the point's own voxel and the 26 around it. Null where none
+  // has. For many points near each other: slam/map/nearest_search.h.
   const Voxel* Nearest(const Eigen::Vector3f& point_map) const;
   const std::vector<Voxel>& voxels() const { return voxels_; }
   const VoxelMapConfig& config() const { return config_; }
 
-  // Points farther out, or not finite, have no cell: they are left out.
+  // False for points that have no cell: too far out, or not finite.
   static bool InReach(const Eigen::Vector3f& point) { return (point.array().abs() < 1e6f).all(); }
 
-  using Cell = std::array<std::int32_t, 3>;  // a table of cells is made of these three
+  using Cell = std::array<std::int32_t, 3>;  // number of the voxel along x, y and z
   // Multiplies by large odd numbers and mixes (Teschner et al. 2003, with a final avalanche step).
   static std::size_t HashOf(const Cell& cell) {
     std::uint64_t h = static_cast<std::uint32_t>(cell[0]) * 0x9E3779B185EBCA87ull ^
@@ -86,7 +87,7 @@ class VoxelMap {
     h *= 0xBF58476D1CE4E5B9ull;
     return static_cast<std::size_t>(h ^ (h >> 32));
   }
-  // As ==, which compilers turn into a call of memcmp.
+  // The same as ==, which compilers turn into a slower call of memcmp.
   static bool Same(const Cell& a, const Cell& b) { return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0; }
 
  private:
@@ -123,7 +124,8 @@ class VoxelMap {
   std::vector<Slot> slots_;    // open addressing, linear probing; a power of two
 };
 
-// One point a voxel of that edge: mean position, of the first point's sigma and colour. In order of first appearance.
+// One point per voxel of that edge: mean position, sigma and colour of its first point. In the order of first
+// appearance.
 std::vector<Point> Downsample(std::span<const Point> points, double voxel_m);
 
 }  // namespace merlin

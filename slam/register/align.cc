@@ -13,24 +13,24 @@ namespace merlin {
 namespace {
 
 constexpr std::size_t kPairsMin = 3;
-// A surface point is this much surer across its surface than along it, in variance (Segal et al. take 1e-3).
+// Variance of a surface point across its surface, over that along it; Segal et al. take the same.
 constexpr double kAcrossShare = 1e-3;
-// A pair's weight falls to a quarter at this many median residuals (2 sigma of a normal distribution), but not below a
-// tenth of a sigma; before that the kernel narrows from max_distance_m by this factor an iteration. At 3 sigma the part
-// that two views do not share pulled a pair of real frames 60 mm off, at 2 sigma 24 mm.
+// The kernel, at which a pair's weight is a quarter, is this many median residuals wide (2 sigma of a normal
+// distribution), and at least a tenth of a sigma. It starts at max_distance_m and narrows by a factor per iteration.
+// With 3 sigma the parts that two real frames do not share pulled them 60 mm off; with 2 sigma 24 mm.
 constexpr double kKernelMedians = 2.0 * 1.4826, kKernelSigmasMin = 0.1, kNarrowing = 0.7;
-// Of the target's diagonal; 0.4 m in a room of 8 m. At a tenth the same pair ended 41 mm off. The point method has no
-// kernel and begins with what is there.
+// Shares of the target's diagonal; 0.4 m in a room of 8 m. With a tenth the same frames ended 41 mm off. The point
+// method has no kernel, and needs more.
 constexpr double kMaxDistanceShare = 0.05, kMaxDistanceSharePoint = 0.25;
-// Fewer points, or a smaller share of them on surfaces, show no surfaces.
+// A cloud with fewer points, or a smaller share of them on surfaces, counts as having no surfaces.
 constexpr std::size_t kSurfacePointsMin = 100;
 constexpr double kSurfaceShareMin = 0.5;
-// While the kernel narrows, about so many of the source's points, evenly spread, say as much as all of them. They go on
-// until a step is so small a share of the source's mean size.
+// While the kernel narrows, about this many of the source's points, evenly spread, are as good as all. They are used
+// until a step is shorter than this share of the source's mean size.
 constexpr std::size_t kCoarsePoints = 1500;
 constexpr double kCoarseStep = 1e-3;
 constexpr int kCoarseIterationsMax = 40;
-// Pairs that change to and fro let the pose circle about the solution. After so many iterations a step against the
+// Pairs that alternate can make the pose circle around the solution. After this many iterations a step against the
 // former one is halved, down to the least share.
 constexpr int kDampingAfter = 50;
 constexpr double kDampingMin = 0.125;
@@ -40,7 +40,7 @@ struct Pair {
   Eigen::Matrix3d information;     // of target - source
 };
 
-// Both clouds about their centroids, in which all sums are well conditioned.
+// Both clouds relative to their centroids, where all sums are well conditioned.
 struct Problem {
   Problem(const Cloud& source_cloud, const Cloud& target_cloud, const AlignConfig& c)
       : config(c),
@@ -79,13 +79,13 @@ double Size_m(const Cloud& cloud) {
   return std::sqrt(squares_m2 / static_cast<double>(cloud.size()));
 }
 
-// A point on a surface: its sigma across, much more along.
+// Of a point on a surface: its sigma across the surface, far more along it.
 Eigen::Matrix3d Covariance(const Eigen::Vector3d& normal, double sigma_m) {
   const Eigen::Matrix3d across = normal * normal.transpose();
   return sigma_m * sigma_m * (across + (Eigen::Matrix3d::Identity() - across) / kAcrossShare);
 }
 
-// In the source frame; zero: a point without the surface that the method needs.
+// In the source frame; zero for a point without the surface that the method needs.
 Eigen::Matrix3d Information(const Problem& p, const Eigen::Matrix3d& R_source_target, std::size_t i, std::size_t j) {
   const double source_sigma_m = p.source.Sigma_m(i), target_sigma_m = p.target.Sigma_m(j);
   const double variance_m2 = source_sigma_m * source_sigma_m + target_sigma_m * target_sigma_m;
@@ -98,7 +98,7 @@ Eigen::Matrix3d Information(const Problem& p, const Eigen::Matrix3d& R_source_ta
       .inverse();
 }
 
-// Of every stride-th source point.
+// The pairs of every stride-th source point.
 std::vector<Pair> FindPairs(const Problem& p, const Pose& T_target_source, std::size_t stride,
                             TrackedNeighbours& targets, AlignResult& result) {
   std::vector<Pair> pairs;
@@ -121,14 +121,14 @@ std::vector<Pair> FindPairs(const Problem& p, const Pose& T_target_source, std::
   return pairs;
 }
 
-// In sigmas.
+// In units of sigma.
 double Residual(const Pair& pair) {
   const Eigen::Vector3d e = pair.target - pair.source;
   return std::sqrt(std::max(0.0, e.dot(pair.information * e)));
 }
 
-// Geman and McClure's kernel into the pairs' information, no narrower than `least` sigmas. Whether it is as narrow as
-// the residuals want it.
+// Multiplies the pairs' information by the weights of Geman and McClure's kernel, no narrower than `least` sigmas. True
+// where the kernel is as narrow as the residuals ask for.
 bool Soften(std::vector<Pair>& pairs, double least) {
   std::vector<double> residuals(pairs.size());
   std::ranges::transform(pairs, residuals.begin(), Residual);
@@ -149,11 +149,11 @@ struct Expansion {
 };
 
 // Of sum e' W e / 2 over T_target_source * Exp(x), e = target - source in the source frame: de/dx = [-I, Hat(source)].
-// With the target's point for one of the two factors the information is the true second derivative of the point method,
-// and what holds the pose in only one of the clouds holds nothing.
+// With the target's point in one of the two factors the information is the true second derivative of the point method,
+// and surfaces that only one of the clouds has hold nothing.
 enum class Curvature { kGaussNewton, kTrue };
 
-// M Hat(v) and Hat(v) M, row by row and column by column.
+// M Hat(v) row by row, and Hat(v) M column by column.
 Eigen::Matrix3d TimesHat(const Eigen::Matrix3d& M, const Eigen::Vector3d& v) {
   Eigen::Matrix3d product;
   for (int i = 0; i < 3; ++i) product.row(i) = M.row(i).cross(v.transpose());
@@ -195,7 +195,7 @@ Expansion Expand(std::span<const Pair> pairs, Curvature curvature) {
   return sum;
 }
 
-// Step x of T_target_source * Exp(x).
+// The step x of T_target_source * Exp(x).
 Vector6d StepOf(std::span<const Pair> pairs, AlignMethod method) {
   if (method != AlignMethod::kPoint) {
     const Expansion sum = Expand(pairs, Curvature::kGaussNewton);
@@ -208,7 +208,7 @@ Vector6d StepOf(std::span<const Pair> pairs, AlignMethod method) {
   return Log(FitRigid(weighted));
 }
 
-// What the pairs at the end say about the pose, turned from the centroids to the clouds' own origins.
+// Covariance and undetermined motions from the last pairs, moved from the centroids to the clouds' own origins.
 void Judge(const std::vector<Pair>& pairs, const Eigen::Vector3d& source_centroid, AlignResult& result) {
   Matrix6d adjoint = Matrix6d::Identity();  // Exp(adjoint * x) = Trans(centroid) Exp(x) Trans(-centroid)
   adjoint.topRightCorner<3, 3>() = Hat(source_centroid);
@@ -232,7 +232,7 @@ AlignResult Align(const Cloud& source, const Cloud& target, const Pose& T_target
                   const AlignConfig& config) {
   AlignResult result;
   result.T_target_source = T_target_source_guess;
-  result.undetermined = FindUndetermined(Shares{});  // so far nothing is held
+  result.undetermined = FindUndetermined(Shares{});  // without pairs nothing is held
   if (source.size() < kPairsMin || target.size() < kPairsMin) return result;
   const Problem problem(source, target, config);
   const bool point = problem.config.method == AlignMethod::kPoint;
@@ -256,7 +256,7 @@ AlignResult Align(const Cloud& source, const Cloud& target, const Pose& T_target
     const bool few = pairs.size() < kPairsMin || result.overlap < config.overlap_min;
     if (stride > 1 &&
         (few || small_step || result.iterations >= std::min(config.iterations_max, kCoarseIterationsMax))) {
-      stride = 1;  // from here on with all points
+      stride = 1;  // from here on all points are used
       small_step = false;
       continue;
     }

@@ -1,8 +1,14 @@
-// Registration of two free clouds: ICP (Besl and McKay 1992), with three ways to measure a pair. Point: the thesis' SVD
-// step (eq. 5.18-5.37). Plane: distance from the target's surface (Chen and Medioni 1992). Gicp: between two surfaces
-// (Segal, Haehnel and Thrun 2009), each point as uncertain across its surface as its sigma says, and far more along it.
-// Plane and gicp weigh pairs by Geman and McClure's kernel, wide at first so that what lies askew still pulls; while it
-// narrows, a part of the source's points serves.
+// Registration of two free clouds by ICP (P. Besl and N. McKay, "A method for registration of 3-D shapes", PAMI 14,
+// 1992), with a choice of three distances between the points of a pair:
+//
+//   point   between the points; solved by the SVD (slam/register/rigid_fit.h)
+//   plane   from the target's surface (Y. Chen and G. Medioni, "Object modelling by registration of multiple range images",
+//           Image and Vision Computing 10, 1992)
+//   gicp    between two surfaces (A. Segal, D. Haehnel and S. Thrun, "Generalized-ICP", RSS 2009): each point has its sigma
+//           across its surface, and a far larger one along it
+//
+// Plane and gicp weigh pairs by the kernel of Geman and McClure. It is wide at first, so that a bad guess is still
+// pulled in. While it narrows, only a part of the source's points is used.
 #pragma once
 
 #include "robot/base/config.h"
@@ -12,17 +18,17 @@
 
 namespace merlin {
 
-// kAuto: gicp where both clouds have surfaces, else (a curve, a few landmarks, a full volume) point.
+// kAuto: gicp where both clouds have surfaces; else (a curve, a few landmarks, a filled volume) point.
 enum class AlignMethod { kPoint, kPlane, kGicp, kAuto };
 
 struct AlignConfig {
   AlignMethod method = AlignMethod::kAuto;
-  // [0, 1e9] points farther apart are no pair; 0: of the target's diagonal a twentieth, with kPoint a quarter
+  // [0, 1e9] largest distance of a pair; 0: a twentieth of the target's diagonal, with kPoint a quarter
   double max_distance_m = 0.0;
   int iterations_max = 200;      // [1, 100000]
-  double step_converged = 1e-5;  // [0, 1] of the source's mean size: a smaller step ends it
-  int neighbours = 20;           // [3, 1000] whose spread gives a point its surface; as small_gicp has it
-  double overlap_min = 0.1;      // [0, 1] of the source's points with a pair, below: not converged; guess
+  double step_converged = 1e-5;  // [0, 1] share of the source's mean size; a smaller step ends the iteration
+  int neighbours = 20;           // [3, 1000] that a point's surface is computed from; as in small_gicp
+  double overlap_min = 0.1;      // [0, 1] share of the source's points with a pair; below it has not converged; guess
 };
 
 template <class Visitor>
@@ -38,10 +44,10 @@ enum class AlignEnd { kConverged, kTooFewPairs, kUndetermined, kIterations };
 
 struct AlignResult {
   Pose T_target_source = Pose::Identity();
-  // Over (translation, rotation) in the source frame, from the pairs' scatter, taken as independent. They are not
-  // quite: errors of two of its sigmas are usual. Zero unless converged.
+  // Over (translation, rotation) in the source frame, from the residuals, taken as independent. They are not quite:
+  // errors of two sigmas are usual. Zero unless converged.
   Matrix6d covariance = Matrix6d::Zero();
-  Undetermined undetermined;    // in the source frame; along these the guess is kept, turns being about the centroid
+  Undetermined undetermined;    // motions of the source frame that keep the guess; turns are about the centroid
   int inliers = 0;              // source points with a target point within max_distance_m
   double overlap = 0.0;         // their share
   double rms_m = 0.0;           // of their distances, point to point
@@ -49,7 +55,7 @@ struct AlignResult {
   int iterations = 0;
   AlignMethod method = AlignMethod::kAuto;  // as used, if there were points
   AlignEnd end = AlignEnd::kTooFewPairs;
-  bool converged() const { return end == AlignEnd::kConverged; }  // false: not to be trusted
+  bool converged() const { return end == AlignEnd::kConverged; }  // false: must not be trusted
 };
 
 AlignResult Align(const Cloud& source, const Cloud& target, const Pose& T_target_source_guess,

@@ -10,7 +10,7 @@
 namespace merlin {
 namespace {
 
-using Cell = std::array<double, 3>;  // whole numbers; a double holds every one that a finite coordinate can give
+using Cell = std::array<double, 3>;  // whole numbers; a double can hold that of every finite coordinate
 
 Cell CellOf(const Eigen::Vector3d& position, double voxel_m) {
   const Eigen::Vector3d cell = (position / voxel_m).array().floor() + 0.0;  // no -0, whose bits differ from those of 0
@@ -24,7 +24,7 @@ std::uint64_t Hash(const Cell& cell) {
   return (hash * 0xbf58476d1ce4e5b9u) >> 20;
 }
 
-// Numbers cells 0, 1, 2, ... in the order in which they first come: a hash table with linear probing.
+// Numbers cells 0, 1, 2, ... in the order of first appearance: a hash table with linear probing.
 class CellNumbers {
  public:
   explicit CellNumbers(std::size_t cells_max) : slots_(std::bit_ceil(2 * cells_max + 1), kEmpty) {}
@@ -47,14 +47,14 @@ class CellNumbers {
   std::vector<Cell> cells_;
 };
 
-// Sums of differences from the cell's first point: no digits lost far from the origin.
+// Sums of differences from the cell's first point, so that no digits are lost far from the origin.
 struct Sum {
   Eigen::Vector3d first, differences = Eigen::Vector3d::Zero();
   double sigma_m = 0.0;
   double count = 0.0;
 };
 
-// More points than these make registration slower, and hardly nearer.
+// More points make registration slower, but hardly more exact.
 constexpr std::size_t kThinPointsMax = 20'000;
 constexpr double kVoxelShareMin = 1e-3;
 

@@ -1,4 +1,5 @@
-// A free cloud: points that came with no map and no camera. In doubles, since files give coordinates of national grids.
+// A free cloud: points without a map or a camera. Its coordinates are doubles, because files may have those of a
+// national grid, millions of metres from the origin.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,28 +9,28 @@ namespace merlin {
 
 struct Cloud {
   std::vector<Eigen::Vector3d> positions;  // [m], finite, within +-1e9
-  std::vector<double> sigma_m;             // one standard deviation of each point, > 0; empty: all alike, and unknown
+  std::vector<double> sigma_m;             // one standard deviation per point, > 0; empty: unknown, and equal for all
   std::size_t size() const { return positions.size(); }
-  // Where unknown only the ratios count: any number serves.
+  // Where the sigmas are unknown only their ratios count, so any number will do.
   double Sigma_m(std::size_t i) const { return sigma_m.empty() ? 0.01 : sigma_m[i]; }
 };
 
-// One point a voxel of that edge [m], > 0: mean position and mean sigma. In order of first appearance.
+// One point per voxel of that edge [m], > 0: mean position and mean sigma. In the order of first appearance.
 Cloud Thin(const Cloud& cloud, double voxel_m);
 
 struct ThinPair {
   Cloud source, target;
-  double voxel_m = 0.0;  // 0: as they were
+  double voxel_m = 0.0;  // 0: unchanged
 };
 
-// Both thinned by one voxel until neither has more than 20,000 points, which registration takes in about 0.1 s: the
-// first that fits of 1/1000 of the longer diagonal, and sqrt(2) times as much each time.
+// Thins both with the same voxel until neither has more than 20,000 points, which take about 0.1 s to register. The
+// voxel starts at 1/1000 of the longer diagonal and grows by sqrt(2).
 ThinPair ThinToFit(const Cloud& source, const Cloud& target);
 
-// Of the box around the points; 0 without any.
+// Diagonal of the box around the points; 0 without points.
 double Diagonal_m(const Cloud& cloud);
 
-// The mean position; of at least one point.
+// The mean position of at least one point.
 Eigen::Vector3d Centroid(const Cloud& cloud);
 
 }  // namespace merlin

@@ -16,7 +16,7 @@ struct NormalEquations {
   double squares_m2 = 0.0;
 };
 
-// What of a point is the same in every iteration.
+// A point, with what stays the same in every iteration.
 struct Source {
   Eigen::Vector3f position;
   float sigma_m;
@@ -49,7 +49,7 @@ NormalEquations Linearize(std::span<const Source> points, NearestSearch& search,
       ++equations.inliers;
       equations.squares_m2 += squared_m2;
     }
-    // Range noise acts along the ray: seen at a grazing angle little of it is across the surface.
+    // Range noise acts along the ray: at a grazing angle little of it is normal to the surface.
     const Eigen::Vector3d n_base = (T.linear().transpose() * voxel->normal).cast<double>();
     const double across = n_base.dot(point.ray);
     const double variance_m2 = std::pow(point.sigma_m * across, 2) + config.map_sigma_m * config.map_sigma_m;

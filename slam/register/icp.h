@@ -1,5 +1,11 @@
-// Registration of a frame against a map: point-to-plane ICP (Chen and Medioni 1992) with a Geman-McClure kernel, as a
-// maximum a posteriori estimate: a prior on the pose holds what the geometry does not (the axis of a bare corridor).
+// Registration of a frame against a map: point-to-plane ICP (Y. Chen and G. Medioni, "Object modelling by registration
+// of multiple range images", Image and Vision Computing 10, 1992) with the kernel of Geman and McClure against
+// outliers. The result is a maximum a posteriori estimate: a prior on the pose holds what the geometry does not, such
+// as the position along a bare corridor.
+//
+//   frame  origin and axes
+//   base   the car at the frame's stamp; points are given in it
+//   map    the map's
 #pragma once
 
 #include <span>
@@ -13,12 +19,12 @@ namespace merlin {
 
 struct IcpConfig {
   int iterations_max = 20;         // [1, 1000]
-  double step_converged = 2e-4;    // [0, 1] m and rad; a smaller step ends it
-  double kernel_m = 0.05;          // [0.001, 10] residual at which a pair's weight has fallen to a quarter; guess
-  double map_sigma_m = 0.01;       // [0, 1] of the map's surface; guess
-  double independent_share = 0.1;  // [0, 1] of pairs that carry information of their own: neighbours err alike; guess
-  int inliers_min = 60;            // [6, 1e9] pairs within two kernels, below: not converged
-  double inlier_share_min = 0.3;   // [0, 1] of all pairs, below: not converged
+  double step_converged = 2e-4;    // [0, 1] m and rad; a smaller step ends the iteration
+  double kernel_m = 0.05;          // [0.001, 10] residual at which the weight of a pair is a quarter; guess
+  double map_sigma_m = 0.01;       // [0, 1] one sigma of the map's surface; guess
+  double independent_share = 0.1;  // [0, 1] of the pairs that count as independent: neighbours err alike; guess
+  int inliers_min = 60;            // [6, 1e9] pairs within two kernels; with fewer it has not converged
+  double inlier_share_min = 0.3;   // [0, 1] their share of all pairs; below it has not converged
 };
 
 template <class Visitor>
@@ -32,7 +38,8 @@ void Visit(Visitor& v, IcpConfig& c) {
   v("inlier_share_min", c.inlier_share_min, {0.0, 1.0});
 }
 
-// Where the pose is believed to be; information over (translation, rotation) in the base frame. Zero: no belief, only a guess.
+// The expected pose. information: inverse covariance over (translation, rotation) in the base frame; zero where the
+// pose is only a start.
 struct PosePrior {
   Pose T_map_base = Pose::Identity();
   Matrix6d information = Matrix6d::Zero();
@@ -42,13 +49,14 @@ struct RegisterResult {
   Pose T_map_base = Pose::Identity();
   Matrix6d covariance = Matrix6d::Zero();  // over (translation, rotation) in the base frame
   int inliers = 0;
-  double inlier_share = 0.0;  // of the points that meet the map: what is seen for the first time says nothing
+  double inlier_share = 0.0;  // of the points that have a surface of the map nearby: new ground does not count
   double rms_m = 0.0;         // of the inliers' point-to-plane distances
   int iterations = 0;
-  bool converged = false;  // false: the pose is the last iterate and not to be trusted
+  bool converged = false;  // false: the pose is the last iterate, and must not be trusted
 };
 
-// origin_base: where the rays of the points began. Starts at the prior's pose. Too few points or an empty map: not converged.
+// Starts at the prior's pose. origin_base: where the rays of the points begin. With too few points, or an empty map, it
+// has not converged.
 RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3f& origin_base, const VoxelMap& map,
                         const PosePrior& prior, const IcpConfig& config);
 

@@ -16,8 +16,8 @@ struct Positions {
   }
 };
 
-// The k least by distance, then index. nanoflann's own result keeps the one of several equals that its tree meets
-// first.
+// The k nearest by distance, then index. nanoflann's own result set keeps, of several equal ones, the one that its tree
+// meets first.
 class Least {
  public:
   using DistanceType = double;
@@ -33,11 +33,11 @@ class Least {
     if (full()) limit_m2_ = best_.back().squared_m2;
     return true;
   }
-  // A little more than it is: equals must come to addPoint, and the tree's bounds are rounded.
+  // A little more than the limit: equals must reach addPoint, and the tree's bounds are rounded.
   double worstDist() const { return limit_m2_ * (1.0 + 1e-9) + kTiny_m2; }
   bool full() const { return count_ == best_.size(); }
   std::size_t size() const { return count_; }
-  void sort() const {}  // nanoflann 1.6 asks for it; they are in order already
+  void sort() const {}  // nanoflann 1.6 calls it; they are sorted already
 
  private:
   static constexpr double kTiny_m2 = std::numeric_limits<double>::min();
@@ -45,7 +45,7 @@ class Least {
     return a.squared_m2 < b.squared_m2 || (a.squared_m2 == b.squared_m2 && a.index < b.index);
   }
   std::span<Neighbour> best_;
-  double limit_m2_;  // of those that still come into question
+  double limit_m2_;  // of those that can still be added
   std::size_t count_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Nearest neighbours in a cloud, by nanoflann's k-d tree. What it finds is a matter of geometry alone: of points
-// equally far the one with the lowest index is nearest.
+// Nearest neighbours in a cloud, found by nanoflann's k-d tree. The result depends on the geometry alone: of points at
+// the same distance the one with the lowest index comes first.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,15 +20,15 @@ struct Neighbour {
 class Neighbours {
  public:
   static constexpr double kAnywhere_m = 1e150;  // its square is still finite
-  // Keeps a reference: the positions must outlive it, and be finite.
+  // Keeps a reference: the positions must outlive this, and be finite.
   explicit Neighbours(std::span<const Eigen::Vector3d> positions);
   ~Neighbours();
   Neighbours(const Neighbours&) = delete;
   Neighbours& operator=(const Neighbours&) = delete;
 
-  // None farther than reach_m.
+  // The nearest, not farther than reach_m.
   std::optional<Neighbour> Nearest(const Eigen::Vector3d& query, double reach_m) const;
-  // The nearest ones, as many as fit into `found`, near to far; how many there are. None farther than reach_m.
+  // Fills `found` with the nearest, near to far, none farther than reach_m. Returns how many there are.
   std::size_t Nearest(const Eigen::Vector3d& query, std::span<Neighbour> found, double reach_m = kAnywhere_m) const;
 
  private:

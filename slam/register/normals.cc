@@ -6,7 +6,8 @@
 namespace merlin {
 namespace {
 
-// Variances. Of the neighbours of a point on a curve the one across is small; a full volume is not flat.
+// Ratios of variances. The neighbours of a point on a curve spread in one direction; those in a filled volume are not
+// flat.
 constexpr double kLineShare = 1e-6, kWideShare = 0.15, kFlatShare = 0.2;
 
 Eigen::Matrix3d Spread(const Cloud& cloud, const Eigen::Vector3d& at, std::span<const Neighbour> near) {
@@ -31,14 +32,13 @@ Surfaces FindSurfaces(const Cloud& cloud, const Neighbours& neighbours, int coun
   double reach_m = Neighbours::kAnywhere_m;
   Eigen::Vector3d former = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& position : cloud.positions) {
-    // Files come in the order of a scan: the former point's neighbours are not far, and bound how far the search must
-    // go.
+    // Points come in the order of a scan: the neighbours of the point before are near, and limit the search.
     if (reach_m < Neighbours::kAnywhere_m) reach_m = (reach_m + (position - former).norm()) * (1.0 + 1e-9);
     const std::size_t n = neighbours.Nearest(position, found, reach_m);
     if (n == found.size()) reach_m = std::sqrt(found.back().squared_m2);
     former = position;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(Spread(cloud, position, std::span(found).first(n)));  // in closed form: a tenth of the time
+    solver.computeDirect(Spread(cloud, position, std::span(found).first(n)));  // closed form: takes a tenth of the time
     const Eigen::Vector3d v = solver.eigenvalues();
     const bool line = !(v(2) > 0.0 && v(1) > kLineShare * v(2));
     surfaces.normals.push_back(line ? Eigen::Vector3d(0.0, 0.0, 0.0) : Eigen::Vector3d(solver.eigenvectors().col(0)));

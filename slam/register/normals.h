@@ -1,4 +1,4 @@
-// Surfaces of a free cloud, from each point's nearest neighbours.
+// Surfaces of a free cloud: a normal per point, by principal components of its nearest neighbours.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 namespace merlin {
 
 struct Surfaces {
-  // A unit normal a point, either sign: the direction in which its nearest neighbours spread least. Zero where they
-  // spread along one line only, or not at all.
+  // A unit normal per point, of either sign: the direction in which its nearest neighbours spread least. Zero where
+  // they spread along one line only, or not at all.
   std::vector<Eigen::Vector3d> normals;
-  // Of the points whose neighbours lie like those on a surface: flat, and to both sides.
+  // Share of the points whose neighbours spread like those on a surface: flat, but in two directions.
   double share = 0.0;
 };
 

@@ -1,6 +1,7 @@
-// The rigid motion that brings one set of points closest to another, pair by pair: the thesis' step of the ICP
-// (eq. 5.18-5.37; Arun, Huang and Blostein 1987), with the reflection of planar or noisy sets turned back (Umeyama
-// 1991).
+// The rigid motion between two sets of paired points with the least squared distances: centroids, then the SVD of the
+// cross-covariance (K. Arun, T. Huang and S. Blostein, "Least-squares fitting of two 3-D point sets", PAMI 9, 1987).
+// For planar or noisy sets that may be a reflection, which is turned into a rotation (S. Umeyama, "Least-squares
+// estimation of transformation parameters between two point patterns", PAMI 13, 1991).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +16,8 @@ struct PointPair {
   double weight = 1.0;  // >= 0
 };
 
-// T_target_source of least sum of weight * |target - T source|^2. A proper rotation always; where the pairs hold it
-// only in part (one point, a line) one of the best. Identity without pairs or weight.
+// T_target_source with the least sum of weight * |target - T source|^2. Always a proper rotation; where the pairs
+// determine it only in part (one point, a line), one of the best. Identity without pairs or weight.
 Pose FitRigid(std::span<const PointPair> pairs);
 
 }  // namespace merlin

@@ -1,6 +1,6 @@
-// Nearest neighbours of points that move a little from one question to the next, as those of an iteration do. The
-// distance of the second nearest bounds how far a point may move before another target point can be nearer; until then
-// the tree is not asked. The answers are those of the tree, by the triangle inequality.
+// Nearest neighbours of points that move a little from one query to the next, as in the iterations of ICP. The distance
+// of the second nearest limits how far a point may move before another target point can be nearer. Until then the tree
+// is not searched; by the triangle inequality the answers are still those of the tree.
 #pragma once
 
 #include <optional>
@@ -13,18 +13,18 @@ namespace merlin {
 
 class TrackedNeighbours {
  public:
-  // Keeps references: tree and positions, those of the tree, must outlive it. `count` points ask, as 0 ... count - 1.
+  // Keeps references: the tree, and its positions, must outlive this. count: number of the points that move.
   TrackedNeighbours(const Neighbours& tree, std::span<const Eigen::Vector3d> positions, std::size_t count,
                     double reach_m)
       : tree_(tree), positions_(positions), reach_m_(reach_m), tracks_(count) {}
 
-  // Point i's nearest neighbour now that it is at `query`; none farther than reach_m.
+  // The nearest neighbour of point i, which is now at `query`; not farther than reach_m.
   std::optional<Neighbour> Nearest(std::size_t i, const Eigen::Vector3d& query);
 
  private:
   struct Track {
     Eigen::Vector3d asked_at = Eigen::Vector3d::Zero();
-    double others_m = 0.0;  // no other position is nearer to asked_at; 0: not asked yet, or without a neighbour
+    double others_m = 0.0;  // distance of the second nearest from asked_at; 0: no search yet, or no neighbour
     std::uint32_t index = 0;
   };
   const Neighbours& tree_;

@@ -6,7 +6,7 @@
 namespace merlin {
 namespace {
 
-// Below this share of the greatest, a motion moves no point: the turn of a line about itself. A variance.
+// A motion with less than this share of the largest variance moves no point: a line that turns about itself.
 constexpr double kMovesNothing = 1e-9;
 
 }  // namespace
@@ -16,11 +16,11 @@ Shares SplitIntoShares(const PairSums& sums) {
   const double translation = sums.whole.topLeftCorner<3, 3>().trace();
   const double rotation = sums.whole.bottomRightCorner<3, 3>().trace();
   if (!(translation > 0.0) || !std::isfinite(translation + rotation) || !sums.information.allFinite()) return result;
-  // Rotations in metres at the mean lever, so that "moves nothing" has one scale.
+  // Rotations in metres at the mean lever arm, so that kMovesNothing has one scale.
   Vector6d scale = Vector6d::Ones();
   if (rotation > 0.0) scale.tail<3>().setConstant(std::sqrt(translation / rotation));
   const Eigen::SelfAdjointEigenSolver<Matrix6d> whole(scale.asDiagonal() * sums.whole * scale.asDiagonal());
-  // In motions of the same effect the whole is the identity, and the information's eigenvalues are the shares.
+  // In the basis where `whole` is the identity, the eigenvalues of the information are the shares.
   Matrix6d equal = scale.asDiagonal() * whole.eigenvectors();
   int still = 0;
   for (int i = 0; i < 6; ++i) {

@@ -30,116 +30,104 @@ Observation Blocked(double gap_m) {
   return observation;
 }
 
-ManualWish Hand(double speed_m_s, double steering_rad = 0.0) {
+ManualCommand Drives(double speed_m_s, double steering_rad = 0.0) {
   return {.heard = kNow, .held = true, .speed_m_s = speed_m_s, .steering_rad = steering_rad};
 }
 
-Arbitration Decide(const ManualWish& wish, const std::optional<DriveCommand>& autonomy, const Observation* seen) {
-  return Arbiter(Car(), {}, {}).Decide(kNow, wish, autonomy, seen);
+Arbitration Decide(const ManualCommand& manual, const std::optional<DriveCommand>& autonomy, const Observation* seen) {
+  return Arbiter(Car(), {}, {}).Decide(kNow, manual, autonomy, seen);
 }
 
 const DriveCommand kPilot{.speed_m_s = 0.4, .steering_rad = 0.1, .valid_for = std::chrono::milliseconds(200)};
 
-void ExpectStands(const Arbitration& arbitration, Driver driver) {
+void ExpectHalt(const Arbitration& arbitration, Driver driver) {
   EXPECT_EQ(arbitration.driver, driver) << Name(arbitration.driver);
   EXPECT_EQ(arbitration.command.speed_m_s, 0.0);
   EXPECT_TRUE(std::isfinite(arbitration.command.steering_rad));
 }
 
-TEST(Arbiter, LetsTheHandBeatAutonomy) {
+TEST(Arbiter, LetsTheOperatorBeatAutonomy) {
   const Observation free = Free();
-  ManualWish wish = Hand(0.7, -0.2);
-  wish.autonomy = true;
-  const Arbitration arbitration = Decide(wish, kPilot, &free);
+  ManualCommand manual = Drives(0.7, -0.2);
+  manual.autonomy = true;
+  const Arbitration arbitration = Decide(manual, kPilot, &free);
   EXPECT_EQ(arbitration.driver, Driver::kManual);
   EXPECT_DOUBLE_EQ(arbitration.command.speed_m_s, 0.7);
   EXPECT_DOUBLE_EQ(arbitration.command.steering_rad, -0.2);
   EXPECT_GT(arbitration.command.valid_for, Duration(0));
 }
 
-TEST(Arbiter, GivesTheWheelToAutonomyOnlyWhereItIsSwitchedOnAndTheHandIsOff) {
+TEST(Arbiter, LetsAutonomyDriveOnlyWhereItIsSwitchedOnAndTheOperatorDoesNot) {
   const Observation free = Free();
-  ManualWish wish{.heard = kNow};
-  ExpectStands(Decide(wish, kPilot, &free), Driver::kNobody);
-  wish.autonomy = true;
-  const Arbitration arbitration = Decide(wish, kPilot, &free);
+  ManualCommand manual{.heard = kNow};
+  ExpectHalt(Decide(manual, kPilot, &free), Driver::kNobody);
+  manual.autonomy = true;
+  const Arbitration arbitration = Decide(manual, kPilot, &free);
   EXPECT_EQ(arbitration.driver, Driver::kAutonomy);
   EXPECT_EQ(arbitration.command.speed_m_s, kPilot.speed_m_s);
   EXPECT_EQ(arbitration.command.steering_rad, kPilot.steering_rad);
-  ExpectStands(Decide(wish, std::nullopt, &free), Driver::kNobody);
+  ExpectHalt(Decide(manual, std::nullopt, &free), Driver::kNobody);
 }
 
-TEST(Arbiter, StopsTheHandBeforeAnObstacleUnlessItOverrides) {
+TEST(Arbiter, StopsTheOperatorBeforeAnObstacleUnlessItIsOverridden) {
   const Observation blocked = Blocked(0.4);  // AvoidConfig keeps half a metre
-  ExpectStands(Decide(Hand(0.5), std::nullopt, &blocked), Driver::kObstacleStop);
-  ManualWish wish = Hand(0.5);
-  wish.override_stop = true;
-  const Arbitration arbitration = Decide(wish, std::nullopt, &blocked);
+  ExpectHalt(Decide(Drives(0.5), std::nullopt, &blocked), Driver::kObstacleStop);
+  ManualCommand manual = Drives(0.5);
+  manual.override_stop = true;
+  const Arbitration arbitration = Decide(manual, std::nullopt, &blocked);
   EXPECT_EQ(arbitration.driver, Driver::kManual);
   EXPECT_DOUBLE_EQ(arbitration.command.speed_m_s, 0.5);
 }
 
-TEST(Arbiter, SlowsTheHandToWhatStillStopsInTime) {
+TEST(Arbiter, SlowsTheOperatorToWhatStillStopsInTime) {
   const Observation blocked = Blocked(1.5);
-  const Arbitration arbitration = Decide(Hand(2.0), std::nullopt, &blocked);
+  const Arbitration arbitration = Decide(Drives(2.0), std::nullopt, &blocked);
   EXPECT_EQ(arbitration.driver, Driver::kManual);
   EXPECT_NEAR(arbitration.command.speed_m_s, std::sqrt(2.0 * 0.5 * (1.5 - 0.5)), 0.01);
 }
 
-TEST(Arbiter, LooksAlongTheArcThatTheHandSteers) {
+TEST(Arbiter, LooksAlongTheArcThatTheOperatorSteers) {
   const Observation blocked = Blocked(1.0);  // straight ahead: 0.2 m wide, and 0.9 m past it at full steering
-  EXPECT_LT(Decide(Hand(1.5, 0.0), std::nullopt, &blocked).command.speed_m_s, 0.8);
-  EXPECT_DOUBLE_EQ(Decide(Hand(1.5, 0.43), std::nullopt, &blocked).command.speed_m_s, 1.5);
+  EXPECT_LT(Decide(Drives(1.5, 0.0), std::nullopt, &blocked).command.speed_m_s, 0.8);
+  EXPECT_DOUBLE_EQ(Decide(Drives(1.5, 0.43), std::nullopt, &blocked).command.speed_m_s, 1.5);
 }
 
-TEST(Arbiter, LetsTheHandBackAwayFromWhatIsAhead) {
+TEST(Arbiter, LetsTheOperatorBackAwayFromWhatIsAhead) {
   const Observation blocked = Blocked(0.1);
-  const Arbitration arbitration = Decide(Hand(-0.5), std::nullopt, &blocked);
+  const Arbitration arbitration = Decide(Drives(-0.5), std::nullopt, &blocked);
   EXPECT_EQ(arbitration.driver, Driver::kManual);
   EXPECT_DOUBLE_EQ(arbitration.command.speed_m_s, -0.5);
-  EXPECT_EQ(Decide(Hand(0.0, 0.3), std::nullopt, &blocked).driver, Driver::kManual);  // steers where it stands
+  EXPECT_EQ(Decide(Drives(0.0, 0.3), std::nullopt, &blocked).driver, Driver::kManual);  // steers where it stands
 }
 
 TEST(Arbiter, StopsAheadWhereItSeesNothing) {
-  ExpectStands(Decide(Hand(0.5), std::nullopt, nullptr), Driver::kObstacleStop);
+  ExpectHalt(Decide(Drives(0.5), std::nullopt, nullptr), Driver::kObstacleStop);
   Observation old = Free();
   old.stamp = kNow - std::chrono::milliseconds(501);
-  ExpectStands(Decide(Hand(0.5), std::nullopt, &old), Driver::kObstacleStop);
+  ExpectHalt(Decide(Drives(0.5), std::nullopt, &old), Driver::kObstacleStop);
   old.stamp = kNow - std::chrono::milliseconds(499);
-  EXPECT_EQ(Decide(Hand(0.5), std::nullopt, &old).driver, Driver::kManual);
+  EXPECT_EQ(Decide(Drives(0.5), std::nullopt, &old).driver, Driver::kManual);
 }
 
 TEST(Arbiter, StopsEverythingWhenTheLinkIsSilent) {
   const Observation free = Free();
-  ManualWish wish = Hand(0.5);
-  wish.autonomy = true;
+  ManualCommand manual = Drives(0.5);
+  manual.autonomy = true;
   for (const bool held : {true, false}) {
-    wish.held = held;
-    wish.heard = kNow - std::chrono::milliseconds(499);
-    EXPECT_GT(Decide(wish, kPilot, &free).command.speed_m_s, 0.0);
-    wish.heard = kNow - std::chrono::milliseconds(501);
-    ExpectStands(Decide(wish, kPilot, &free), Driver::kNobody);
+    manual.held = held;
+    manual.heard = kNow - std::chrono::milliseconds(499);
+    EXPECT_GT(Decide(manual, kPilot, &free).command.speed_m_s, 0.0);
+    manual.heard = kNow - std::chrono::milliseconds(501);
+    ExpectHalt(Decide(manual, kPilot, &free), Driver::kNobody);
   }
 }
 
-TEST(Arbiter, TakesAWishThatIsNotFiniteForAHandThatIsOff) {
+TEST(Arbiter, TakesACommandThatIsNotFiniteForNone) {
   const Observation free = Free();
   for (const double bad : {kNan, HUGE_VAL, -HUGE_VAL}) {
-    ExpectStands(Decide(Hand(bad), std::nullopt, &free), Driver::kNobody);
-    ExpectStands(Decide(Hand(0.5, bad), std::nullopt, &free), Driver::kNobody);
+    ExpectHalt(Decide(Drives(bad), std::nullopt, &free), Driver::kNobody);
+    ExpectHalt(Decide(Drives(0.5, bad), std::nullopt, &free), Driver::kNobody);
   }
-}
-
-TEST(ArcAhead, IsACircleOfTheCarsRadius) {
-  const auto straight = ArcAhead(Car(), 0.0, 1.0);
-  EXPECT_NEAR(straight.back().x(), 1.0, 0.051);
-  EXPECT_EQ(straight.back().y(), 0.0);
-  EXPECT_EQ(ArcAhead(Car(), 0.3, 0.0).size(), 1u);
-  const double radius_m = 0.33 / std::tan(0.3);
-  for (const double side : {1.0, -1.0})
-    for (const Eigen::Vector2d& p : ArcAhead(Car(), side * 0.3, 3.0))
-      EXPECT_NEAR((p - Eigen::Vector2d(0.0, side * radius_m)).norm(), radius_m, 0.03);
-  EXPECT_EQ(ArcAhead(Car(), 9.0, 1.0).back(), ArcAhead(Car(), Car().steering_max_rad, 1.0).back());
 }
 
 }  // namespace

@@ -26,57 +26,58 @@ Observation Box(double x, double y, double z, double time_s = 0.0) {
   return observation;
 }
 
-TEST(Avoid, MeasuresTheFreeWayToABoxFromTheCarsFront) {
+TEST(Avoid, MeasuresTheFreeDistanceToABoxFromTheCarsFront) {
   Avoid avoid(kCar, {});
-  const auto way = avoid.FreeWay_m(Box(3.0, 0.0, 0.3), Straight());
-  ASSERT_TRUE(way);
-  EXPECT_NEAR(*way, 3.0 - 0.45, 0.05);
+  const auto free_m = avoid.FreeDistance_m(Box(3.0, 0.0, 0.3), Straight());
+  ASSERT_TRUE(free_m);
+  EXPECT_NEAR(*free_m, 3.0 - 0.45, 0.05);
 }
 
 TEST(Avoid, IgnoresWhatIsBesideAboveAndOnTheFloor) {
   Avoid avoid(kCar, {});
-  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.5, 0.3), Straight()));  // its edge is 0.3 m to the side, the car needs 0.24
-  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.0, 1.0), Straight()));
-  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.0, -0.15), Straight()));  // up to 0.05 m high
-  EXPECT_FALSE(avoid.FreeWay_m(Observation{}, Straight()));
-  EXPECT_FALSE(avoid.FreeWay_m(Box(2.0, 0.0, 0.3), {}));
+  EXPECT_FALSE(
+      avoid.FreeDistance_m(Box(2.0, 0.5, 0.3), Straight()));  // its edge is 0.3 m to the side, the car needs 0.24
+  EXPECT_FALSE(avoid.FreeDistance_m(Box(2.0, 0.0, 1.0), Straight()));
+  EXPECT_FALSE(avoid.FreeDistance_m(Box(2.0, 0.0, -0.15), Straight()));  // up to 0.05 m high
+  EXPECT_FALSE(avoid.FreeDistance_m(Observation{}, Straight()));
+  EXPECT_FALSE(avoid.FreeDistance_m(Box(2.0, 0.0, 0.3), {}));
 }
 
 TEST(Avoid, FollowsThePathAroundACorner) {
   std::vector<Eigen::Vector2d> path;  // a quarter circle to the left, radius 2 m
   for (double a = 0.0; a < 1.57; a += 0.025) path.push_back({2.0 * std::sin(a), 2.0 * (1.0 - std::cos(a))});
   Avoid avoid(kCar, {});
-  EXPECT_FALSE(avoid.FreeWay_m(Box(3.0, 0.0, 0.3), path));
-  const auto way = avoid.FreeWay_m(Box(2.0, 2.0, 0.3), path);
-  ASSERT_TRUE(way);
-  EXPECT_NEAR(*way, 2.0 * 1.4 - 0.45, 0.25);
+  EXPECT_FALSE(avoid.FreeDistance_m(Box(3.0, 0.0, 0.3), path));
+  const auto free_m = avoid.FreeDistance_m(Box(2.0, 2.0, 0.3), path);
+  ASSERT_TRUE(free_m);
+  EXPECT_NEAR(*free_m, 2.0 * 1.4 - 0.45, 0.25);
 }
 
 TEST(Avoid, DoesNotStopForThreePointsOfNoise) {
   Observation observation;
   for (int i = 0; i < 3; ++i) observation.points_base.push_back({.position = {1.0f, 0.0f, 0.3f}, .sigma_m = 0.01f});
-  EXPECT_FALSE(Avoid(kCar, {}).FreeWay_m(observation, Straight()));
+  EXPECT_FALSE(Avoid(kCar, {}).FreeDistance_m(observation, Straight()));
 }
 
 TEST(Avoid, TakesManySaturatedPixelsAheadForSomethingClose) {
   Observation observation;
   observation.saturated_base.assign(50, Eigen::Vector3f::UnitX());
-  EXPECT_EQ(Avoid(kCar, {}).FreeWay_m(observation, Straight()), 0.0);
+  EXPECT_EQ(Avoid(kCar, {}).FreeDistance_m(observation, Straight()), 0.0);
   observation.saturated_base.assign(50, Eigen::Vector3f(0.8f, 0.6f, 0.0f));  // to the side
-  EXPECT_FALSE(Avoid(kCar, {}).FreeWay_m(observation, Straight()));
+  EXPECT_FALSE(Avoid(kCar, {}).FreeDistance_m(observation, Straight()));
 }
 
 TEST(Avoid, RemembersAnObstacleThatDropsOutOfSightForAMoment) {
   Avoid avoid(kCar, {});
-  ASSERT_TRUE(avoid.FreeWay_m(Box(2.0, 0.0, 0.3, 0.0), Straight()));
+  ASSERT_TRUE(avoid.FreeDistance_m(Box(2.0, 0.0, 0.3, 0.0), Straight()));
   Observation blind;
   blind.stamp = FromSeconds(0.3);
   blind.T_odom_base = FromXyYaw(0.15, 0.0, 0.0);
-  const auto way = avoid.FreeWay_m(blind, Straight());
-  ASSERT_TRUE(way);
-  EXPECT_NEAR(*way, 2.0 - 0.45 - 0.15, 0.05);
+  const auto free_m = avoid.FreeDistance_m(blind, Straight());
+  ASSERT_TRUE(free_m);
+  EXPECT_NEAR(*free_m, 2.0 - 0.45 - 0.15, 0.05);
   blind.stamp = FromSeconds(1.0);
-  EXPECT_FALSE(avoid.FreeWay_m(blind, Straight()));
+  EXPECT_FALSE(avoid.FreeDistance_m(blind, Straight()));
 }
 
 TEST(Avoid, LimitsTheSpeedSoThatBrakingEndsAtTheGap) {
@@ -89,17 +90,17 @@ TEST(Avoid, LimitsTheSpeedSoThatBrakingEndsAtTheGap) {
   EXPECT_NEAR(avoid.SpeedLimit_m_s(config.stop_gap_m + 0.4), std::sqrt(0.4), 1e-12);
 }
 
-TEST(Avoid, SeesNoFreeWayWhereTheCameraLooksAside) {
+TEST(Avoid, SeesNoFreePathWhereTheCameraLooksAside) {
   Avoid avoid({.front_m = 0.45, .half_width_m = 0.15}, {});
   const std::vector<Eigen::Vector2d> ahead{{0.0, 0.0}, {4.0, 0.0}};
   Observation observation;
   for (const double yaw_rad : {0.0, 0.2, -0.2}) {
     observation.view_yaw_rad = yaw_rad;
-    EXPECT_FALSE(avoid.FreeWay_m(observation, ahead)) << yaw_rad;
+    EXPECT_FALSE(avoid.FreeDistance_m(observation, ahead)) << yaw_rad;
   }
   for (const double yaw_rad : {0.21, -0.21, 1.5}) {
     observation.view_yaw_rad = yaw_rad;
-    EXPECT_EQ(avoid.FreeWay_m(observation, ahead), 0.0) << yaw_rad;
+    EXPECT_EQ(avoid.FreeDistance_m(observation, ahead), 0.0) << yaw_rad;
   }
 }
 

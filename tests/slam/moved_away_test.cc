@@ -61,7 +61,7 @@ class Camera {
     Keyframe keyframe;
     keyframe.T_map_base = T_map_base;
     keyframe.points_base = seen.points_base;
-    keyframe.sights = {{seen.stamp, Pose::Identity(), ClearView(seen)}};
+    keyframe.views = {{seen.stamp, Pose::Identity(), ClearView(seen)}};
     return keyframe;
   }
 
@@ -169,7 +169,7 @@ TEST(MovedAway, KeepsAFloorThatIsTooDarkFromFarAway) {
     for (const Point& point : keyframes.back().points_base)
       if (point.position.z() < 0.1f)
         dark.free_base.push_back(dark.camera_base + 1.4f * (point.position - dark.camera_base));
-    keyframes.back().sights[0].view = ClearView(dark);
+    keyframes.back().views[0].view = ClearView(dark);
   }
   const std::vector<bool> gone = MovedAway(map.voxels(), keyframes, {});
   EXPECT_LT(std::ranges::count(gone, true), 0.01 * static_cast<double>(gone.size()));
@@ -191,7 +191,7 @@ TEST(MovedAway, KeepsWallsOfTwoVisitsThatDoNotQuiteAgree) {
 }
 
 // However little it was seen: two may err.
-TEST(MovedAway, WantsThreeSightsThatLookThrough) {
+TEST(MovedAway, NeedsThreeViewsThroughAVoxel) {
   Camera camera;
   VoxelMap map({.voxel_m = 0.04});
   map.Insert(std::vector<Point>{{.position = {3.0f, 0.02f, 0.5f}, .sigma_m = 0.01f}}, Pose::Identity(), 0.0);
@@ -221,14 +221,14 @@ TEST(MovedAway, KeepsWhatPixelsThatDoNotTellStandFor) {
           seen.points_base.push_back({.position = seen.camera_base + 5.0f * ray});
       }
     std::vector<Keyframe> keyframes(4);
-    for (Keyframe& keyframe : keyframes) keyframe.sights = {{.view = ClearView(seen)}};
+    for (Keyframe& keyframe : keyframes) keyframe.views = {{.view = ClearView(seen)}};
     const std::vector<bool> gone = MovedAway(map.voxels(), keyframes, {});
     EXPECT_EQ(std::ranges::count(gone, true), tells ? std::ssize(gone) : 0);
   }
 }
 
-// The same frames as sights of one key frame far away, in another order, are the same evidence.
-TEST(MovedAway, AsksSightsWhereTheyWereAndInTheOrderOfTime) {
+// The same frames as views of one key frame far away, in another order, are the same evidence.
+TEST(MovedAway, TakesViewsWhereTheyWereInTheOrderOfTime) {
   Camera camera;
   std::vector<Keyframe> keyframes;
   VoxelMap map({.voxel_m = 0.04});
@@ -241,8 +241,8 @@ TEST(MovedAway, AsksSightsWhereTheyWereAndInTheOrderOfTime) {
   Keyframe one;
   one.T_map_base = FromXyYaw(-7.0, 3.0, 2.0);
   for (auto keyframe = keyframes.rbegin(); keyframe != keyframes.rend(); ++keyframe) {
-    one.sights.push_back(keyframe->sights[0]);
-    one.sights.back().T_keyframe_base = one.T_map_base.inverse() * keyframe->T_map_base;
+    one.views.push_back(keyframe->views[0]);
+    one.views.back().T_keyframe_base = one.T_map_base.inverse() * keyframe->T_map_base;
   }
   const std::vector<bool> gone = MovedAway(map.voxels(), keyframes, {});
   EXPECT_GT(std::ranges::count(gone, true), 100);
@@ -266,7 +266,7 @@ TEST(MovedAway, TakesOutWhatStoodWhereTheCarDrove) {
   std::vector<Keyframe> keyframes(12);
   for (int i = 0; i < 12; ++i) {
     keyframes[i].T_map_base = T_map_way * FromXyYaw(0.1 * i, 0.0, 0.0);
-    keyframes[i].sights = {Sight{}};
+    keyframes[i].views = {PlacedView{}};
   }
   const Footprint footprint{.front_m = 0.4, .half_width_m = 0.145, .height_m = 0.2};
   const auto left_of = [&](std::span<const Keyframe> driven) {
@@ -282,7 +282,7 @@ TEST(MovedAway, TakesOutWhatStoodWhereTheCarDrove) {
   EXPECT_EQ(std::ranges::count_if(left, [](double y) { return std::abs(y) > 0.105; }), 11);
 }
 
-// Stands before the box, which stays or goes: no new key frame is taken, and the sights are few, however long it stands.
+// The car waits in front of a box that stays or goes: no new key frame is taken, and it keeps few views, however long this lasts.
 TEST(Slam, TakesOutOfItsMapWhatGoesAwayWhileTheCarStands) {
   for (const bool goes : {false, true}) {
     Slam slam({});
@@ -299,7 +299,7 @@ TEST(Slam, TakesOutOfItsMapWhatGoesAwayWhileTheCarStands) {
     }
     ASSERT_FALSE(slam.keyframes().empty());
     EXPECT_NEAR(slam.keyframes().back().T_map_base.translation().x(), 0.5, 0.1);
-    EXPECT_EQ(slam.keyframes().back().sights.size(), 4u);
+    EXPECT_EQ(slam.keyframes().back().views.size(), 4u);
     const VoxelMap map = slam.BuildMap();
     const Box front(Eigen::Vector3d(2.9, -0.2, 0.15), Eigen::Vector3d(3.1, 0.2, 0.5));
     const auto in_front = [&](const Voxel& voxel) { return front.contains(voxel.mean.cast<double>()); };
@@ -314,7 +314,7 @@ TEST(MovedAway, TakesNothingFromNothing) {
   map.Insert(std::vector<Point>{{.position = {1.0f, 0.0f, 0.0f}, .sigma_m = 0.01f}}, Pose::Identity(), 0.0);
   EXPECT_EQ(MovedAway(map.voxels(), {}, {}), std::vector<bool>{false});
   std::vector<Keyframe> blind(5);
-  for (Keyframe& keyframe : blind) keyframe.sights = {Sight{}};
+  for (Keyframe& keyframe : blind) keyframe.views = {PlacedView{}};
   EXPECT_EQ(MovedAway(map.voxels(), blind, {}), std::vector<bool>{false});
 }
 

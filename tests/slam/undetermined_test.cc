@@ -48,7 +48,7 @@ const Plane kFloor{{0, 0, 0}, {0, 0, 1}}, kLeft{{0, 1, 1}, {0, 1, 0}}, kRight{{0
 
 TEST(Undetermined, IsNothingInACornerOfThreeWalls) { EXPECT_EQ(Of({kFloor, kLeft, kEnd}).count(), 0); }
 
-TEST(Undetermined, IsTheWayAlongABareCorridor) {
+TEST(Undetermined, IsTheAxisOfABareCorridor) {
   const Undetermined undetermined = Of({kFloor, kLeft, kRight});
   ASSERT_EQ(undetermined.count(), 1);
   EXPECT_TRUE(Contains(undetermined, Twist(1, 0, 0, 0, 0, 0)));

@@ -20,7 +20,7 @@ void ExpectUsageError(const std::string& arguments, const std::string& part, con
 TEST(CalibrateCli, RefusesToCalibrateFromNothingUsable) {
   const TemporaryFolder folder;
   ExpectUsageError("calibrate", "subcommand", folder.path());
-  ExpectUsageError("calibrate odometry", "what is it to calibrate from?", folder.path());
+  ExpectUsageError("calibrate odometry", "it needs one source of drives", folder.path());
   ExpectUsageError("calibrate odometry no.yaml --study", "several", folder.path());
   ExpectUsageError("calibrate odometry no.yaml", "no.yaml: cannot be read", folder.path());
   ExpectUsageError("calibrate odometry --robot moon", "--robot", folder.path());

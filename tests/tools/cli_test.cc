@@ -50,6 +50,7 @@ TEST(Cli, RefusesBadUsageWithExitTwo) {
   ExpectRefused("run corridor_short --robot hardware:", "--robot", folder.path());
   ExpectRefused("run corridor_short --robot hardware:none.yaml", "none.yaml", folder.path());
   ExpectRefused("doctor --robot twin", "hardware:FILE", folder.path());
+  ExpectRefused("doctor --move", "--robot", folder.path());
   ExpectRefused("run corridor_short --out ''", "--out", folder.path());
   ExpectRefused("run corridor_short --duration ''", "--duration", folder.path());
   ExpectRefused("run corridor_short --duration -1", "--set: duration_s", folder.path());
@@ -67,6 +68,16 @@ TEST(Cli, RefusesBadScenariosRoomsAndCamerasWithExitTwo) {
   ExpectRefused("run corridor_short --set sensors.depth.rate_hz=121", "120 Hz", folder.path());
   ExpectRefused("run corridor_short --set 'obstacles=[{material: dark_boks}]'", "dark_box", folder.path());
   ExpectRefused("run corridor_short --set 'obstacles=[{appear_s: 8, disappear_s: 2}]'", "obstacles", folder.path());
+  const auto refuse_actor = [&](const std::string& rest, const std::string& says) {
+    ExpectRefused("run corridor_short --set 'actors=[{name: it, " + rest + "}]'", says, folder.path());
+  };
+  refuse_actor("shape: spere, size_m: [1], path: [[0, 4, -9.5]]", "sphere");
+  refuse_actor("model: persn, path: [[0, 4, -9.5]]", "person");
+  refuse_actor("shape: sphere, size_m: [.4], material: dark_boks, path: [[0, 4, -9.5]]", "dark_box");
+  refuse_actor("model: person, path: [[0, 4, -9.5], [8, 40, -9.5]]", "path leaves the room");
+  refuse_actor("model: person, path: [[0, 4, -9.5], [8, .nan, -9.5]]", "path[1][1]");
+  refuse_actor("model: person, path: [[0, 0, -9.5]]", "touches the car");
+  refuse_actor("model: person, pth: []", "path");
   ExpectRefused("run corridor_short --set car.start.y_m=-8.5", "start", folder.path());
   ExpectRefused("run corridor_short --set car.start.y_m=-10.6", "start", folder.path());
   std::ofstream(folder.path() / "broken.xml")

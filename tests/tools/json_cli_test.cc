@@ -99,12 +99,12 @@ TEST(JsonCli, CameraNamesItsModelWhateverIsInTheName) {
 TEST(JsonCli, RunPutsItsNoteOnStandardError) {
   const TemporaryFolder folder;
   const Json json = Parsed("run corridor_short --gl off --duration 1 --set checks={} --out o", 0, folder.path());
-  EXPECT_EQ(json["verdict"], "pass");
+  EXPECT_EQ(json["verdict"], "not judged");
   EXPECT_EQ(Json::parse(Contents(folder.path() / "o/result.json")), json);
   EXPECT_NE(Contents(folder.path() / "said").find("--gl is off"), std::string::npos);
 }
 
-TEST(JsonCli, NothingIsOnStandardOutputWhereTheInputIsBad) {
+TEST(JsonCli, NothingIsOnTurntableardOutputWhereTheInputIsBad) {
   const TemporaryFolder folder;
   for (const char* arguments :
        {"run none", "camera none --wall 2", "camera pmd_3k_s", "calibrate odometry none.yaml", "calibrate odometry",

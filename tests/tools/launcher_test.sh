@@ -74,6 +74,9 @@ case_HelpWorksBeforeAnySetUp() {
   merlin 2 rum && says "no 'rum'" && says "did you mean 'run'?"
   merlin 2 '.*' && says "no '.*'"
   merlin 2 test nonsense && says "-R NAME"
+  merlin 2 --no-twin && says "usage: tools/merlin"
+  merlin 2 --no-twin rum && says "did you mean 'run'?"
+  merlin 2 --no-twin test && says "builds both programs"
   nothing_half_done
 }
 
@@ -216,6 +219,18 @@ case_SourcesThatDoNotBuildGiveFour() {
 printf "[1/2] Building a\n[2/2] Building b\nFAILED: b.o\n/usr/bin/c++ a long line\nb.cc:3: error: no\nninja: build stopped\n"; exit 1'
   merlin 4 doctor && says "b.cc:3: error: no"
   ! grep -q "a long line" "$world/err" || fail "the command line was shown"
+}
+
+case_NoTwinBuildsAndStartsTheProgramOfTheCar() {
+  all_packages_there
+  builds_nothing
+  mujoco_there
+  stand_in ninja 'echo "ninja $*" >>"'"$world"'/built"; mkdir -p "$PWD"; echo "ninja: no work to do."'
+  merlin 7 doctor && says "program got: doctor"
+  cp "$world/bin/program" "$top/build/release/tools/merlin_no_twin"
+  sed -i 's/program got/program of the car got/' "$top/build/release/tools/merlin_no_twin"
+  merlin 7 --no-twin run a --robot "hardware:a file.yaml" && says "program of the car got: run a --robot hardware:a file.yaml"
+  grep -q ' merlin$' "$world/built" && grep -q ' merlin_no_twin$' "$world/built" || fail "another program was built"
 }
 
 # A MuJoCo that is there, so that set-up comes to the oracles.

@@ -6,7 +6,7 @@
 namespace merlin {
 namespace {
 
-sim::WorldOptions Twin(const sim::DrivetrainConfig& drivetrain, std::uint64_t seed = 1) {
+sim::WorldOptions Twin(const DrivetrainConfig& drivetrain, std::uint64_t seed = 1) {
   Scenario scenario;
   scenario.car.drivetrain = drivetrain;
   scenario.seed = seed;
@@ -14,10 +14,10 @@ sim::WorldOptions Twin(const sim::DrivetrainConfig& drivetrain, std::uint64_t se
 }
 
 TEST(CalibrationInTheTwin, RecoversAWrongCarFromTapedDrives) {
-  for (const sim::DrivetrainConfig& wrong :
-       {sim::DrivetrainConfig{.steering_offset_rad = 0.02, .wheel_radius_factor = 0.97, .wheelbase_factor = 1.04},
-        sim::DrivetrainConfig{.steering_offset_rad = -0.03, .wheel_radius_factor = 1.02, .wheelbase_factor = 0.95},
-        sim::DrivetrainConfig{}})
+  for (const DrivetrainConfig& wrong :
+       {DrivetrainConfig{.steering_offset_rad = 0.02, .wheel_radius_factor = 0.97, .wheelbase_factor = 1.04},
+        DrivetrainConfig{.steering_offset_rad = -0.03, .wheel_radius_factor = 1.02, .wheelbase_factor = 0.95},
+        DrivetrainConfig{}})
     for (const std::uint64_t seed : {1u, 2u}) {
       const sim::WorldOptions twin = Twin(wrong, seed);
       const OdometryCalibration found = CalibrateOdometry(twin.car, DriveAndMeasure(twin));

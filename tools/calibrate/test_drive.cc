@@ -6,6 +6,8 @@
 
 #include "robot/base/random.h"
 #include "robot/description/description.h"
+#include "robot/kinematics/ackermann.h"
+#include "robot/kinematics/motion.h"
 #include "scenarios/config/names.h"
 
 namespace merlin {
@@ -14,9 +16,9 @@ namespace {
 constexpr double kSpeed_m_s = 0.4;
 constexpr double kSide_m = 2.0, kCorner_rad = 0.35;  // of the square
 constexpr double kCircle_rad = 0.2;
-constexpr std::uint16_t kTapeNoise = 1;  // the purpose of its random numbers: the encoder's have 0
+constexpr std::uint16_t kTapeNoise = 1;  // key of the tape's random numbers; the encoder uses 0
 
-// The car on its floor, and someone who steers it.
+// The simulated car on its floor, with the controls that a test drive needs.
 class TestDrive {
  public:
   explicit TestDrive(const sim::WorldOptions& twin) : world_(twin) { Wait(0.5); }
@@ -51,18 +53,19 @@ class TestDrive {
 
 StraightDrive DriveStraight(const sim::WorldOptions& twin, double way_m) {
   TestDrive drive(twin);
-  drive.Send(kSpeed_m_s, 0.0);  // up to the first mark, so that the gear's play lies as it will at the last
+  // The car drives up to the first mark: the play of the gear then lies to the same side at both marks.
+  drive.Send(kSpeed_m_s, 0.0);
   drive.Wait(1.0);
   drive.Stand();
   const Eigen::Vector3d start = drive.T_world_base().translation();
   const std::int64_t counts = drive.State().encoder_counts;
   drive.Send(kSpeed_m_s, 0.0);
-  while (static_cast<double>(drive.State().encoder_counts - counts) * twin.car.MetresPerCount() < way_m) drive.Step();
+  while (Path_m(twin.car, drive.State().encoder_counts - counts, 0.0) < way_m) drive.Step();
   drive.Stand();
   return {drive.State().encoder_counts - counts, (drive.T_world_base().translation() - start).norm()};
 }
 
-// first_rad: where the servo comes from.
+// first_rad: the steering angle from which the servo turns to steering_rad.
 CircleDrive DriveCircle(const sim::WorldOptions& twin, double first_rad, double steering_rad) {
   TestDrive drive(twin);
   drive.Send(0.0, first_rad);
@@ -83,7 +86,7 @@ CircleDrive DriveCircle(const sim::WorldOptions& twin, double first_rad, double 
   return {reported_rad / steps, (drive.T_world_base().translation() - start.translation()).norm()};
 }
 
-// Where the odometries and the car end, all from the same start.
+// Follows one manoeuvre with both odometries, from the same start as the car.
 class Comparison {
  public:
   Comparison(const sim::WorldOptions& twin, const CarCalibration& calibration)
@@ -98,12 +101,12 @@ class Comparison {
 
   void DriveTurn(double steering_rad, double turn_rad) {
     const double start_rad = turned_rad_;
-    drive_.Send(kSpeed_m_s, steering_rad - calibrated_.steering_offset_rad);
+    drive_.Send(kSpeed_m_s, ServoAngle_rad(calibrated_, steering_rad));
     while (std::abs(turned_rad_ - start_rad) < turn_rad) drive_.Step();
   }
   void DriveStraight(double way_m) {
     const double start_m = path_m_;
-    drive_.Send(kSpeed_m_s, -calibrated_.steering_offset_rad);
+    drive_.Send(kSpeed_m_s, ServoAngle_rad(calibrated_, 0.0));
     while (path_m_ - start_m < way_m) drive_.Step();
   }
   Manoeuvre End(const std::string& name) {

@@ -1,4 +1,5 @@
-// Drives of the twin on an open floor, for calibrating its odometry and for judging that.
+// Test drives of the simulated car on an open floor. Some imitate what an operator measures to calibrate the odometry; others
+// show how good the odometry is before and after the calibration.
 #pragma once
 
 #include <string>
@@ -12,22 +13,24 @@
 
 namespace merlin {
 
-// What an operator with chalk and tape would measure of this car and write down: two straight drives, and circles to both
-// sides, narrow and wide, each angle reached from below and from above. The tape errs by its sigma, by chance keyed by the
-// seed.
+// What an operator with chalk and a tape measure would write down about this car: two straight drives, and narrow and wide
+// circles to both sides. Each steering angle is reached once from below and once from above, so that the play of the
+// linkage cancels. The tape has a random error (MeasuredDrives::tape_sigma_m), drawn from the world's seed.
 MeasuredDrives DriveAndMeasure(const sim::WorldOptions& twin);
 
 struct Manoeuvre {
   std::string name;
   double path_m = 0.0;
-  double error_before_m = 0.0;  // of the odometry's last position, as the description has the car
-  double error_after_m = 0.0;   // and as it was calibrated
+  // How far the odometry's last position is from the true one:
+  double error_before_m = 0.0;  // with the car as it is described
+  double error_after_m = 0.0;   // with the car as it is calibrated
 };
 
-// Circles and squares to both sides, of 2 m and more, driven by the calibrated odometry: how far off each odometry ends.
+// Drives circles and squares (sides of 2 m) to the left and to the right, steered by the calibrated odometry, and measures
+// the error of both odometries at the end of each.
 std::vector<Manoeuvre> DriveManoeuvres(const sim::WorldOptions& twin, const CarCalibration& calibration);
 
-// The open floor with a scenario's car on it.
+// A world of a scenario's car on an open floor.
 sim::WorldOptions OnOpenFloor(const Scenario& scenario);
 
 }  // namespace merlin

@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kSpeed_m_s = 0.5, kYawRate_rad_s = 0.3, kHeight_m = 0.35;
 constexpr int kRayRounds = 20;
+constexpr double kActorAhead_m = 2.0, kActorSpeed_m_s = 1.0;
 
 double Ms(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double, std::milli>(duration).count();
@@ -58,16 +59,35 @@ Stage Corridor() {
                     .T_world_body = Drive()[0].T_world_body});
 }
 
-double DepthFrame_ms(const std::string& model, const Stage& stage, int threads, int frames,
+Stage CorridorWith(const std::string& actor) {
+  return RoomStage({.room = RoomFile("corridor_26x21"),
+                    .materials = Home() / "models/materials.yaml",
+                    .T_world_body = Drive()[0].T_world_body,
+                    .actors = {{.name = actor, .model = ActorFile(actor), .path = {{0, 0, 0}}}}});
+}
+
+// Ahead of the camera, on the floor, crossing from the right to the left.
+void PutActor(const Stage& stage, const std::string& actor, const sim::BodyMotion& camera, sim::BodyMotions& bodies) {
+  const int body = mj_name2id(stage.model.get(), mjOBJ_BODY, ("actor_" + actor).c_str());
+  const Pose T_camera_actor(Eigen::Translation3d(kActorAhead_m, 0.0, -kHeight_m) *
+                            Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitZ()));
+  sim::BodyMotion& motion = bodies[static_cast<std::size_t>(body)];
+  motion = {.T_world_body = camera.T_world_body * T_camera_actor};
+  motion.velocity_m_s = kActorSpeed_m_s * motion.T_world_body.linear().col(0);
+}
+
+double DepthFrame_ms(const std::string& model, const std::string& actor, const Stage& stage, int threads, int frames,
                      const std::atomic<bool>& interrupted) {
   const DepthCameraSheet sheet = ReadDepthCameraSheet(CameraFile(model));
   const DepthSettings settings = NearestSettings(sheet, {});
   sim::TofCamera camera(sheet, ReadDepthCameraErrors(CameraFile(model)), sim::TofEffects{}, 1, threads);
   const std::vector<sim::BodyMotion> drive = Drive();
   std::vector<double> times_ms;
+  sim::BodyMotions bodies = stage.bodies;
   for (int i = 0; i < frames && !interrupted; ++i) {
-    const sim::BodyMotion motion = drive[static_cast<std::size_t>(i) % drive.size()].Of(BodyOptical());
-    const sim::TofView view{*stage.scene, stage.surroundings, stage.bodies, motion};
+    const sim::BodyMotion body = drive[static_cast<std::size_t>(i) % drive.size()], motion = body.Of(BodyOptical());
+    if (!actor.empty()) PutActor(stage, actor, body, bodies);
+    const sim::TofView view{*stage.scene, stage.surroundings, bodies, motion};
     times_ms.push_back(
         TimeOf_ms([&] { (void)camera.Expose(view, settings, FromSeconds(0.05 * i), static_cast<std::uint64_t>(i)); }));
   }
@@ -132,13 +152,19 @@ CameraBench BenchCamera(int threads, const std::atomic<bool>& interrupted) {
   const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(stage.model.get()), mj_deleteData);
   mj_forward(stage.model.get(), data.get());
   bench.depth = {{.model = "pmd_3k_s", .limit_one_thread_ms = 8.0, .limit_two_threads_ms = 5.0},
+                 {.model = "pmd_3k_s", .actor = "person", .limit_one_thread_ms = 8.0, .limit_two_threads_ms = 5.0},
                  {.model = "camcube_3", .limit_one_thread_ms = 80.0, .limit_two_threads_ms = 45.0}};
   for (CameraBench::Depth& depth : bench.depth) {
     const CameraModel lens = ReadDepthCameraSheet(CameraFile(depth.model)).camera;
     depth.width = lens.width;
     depth.height = lens.height;
-    depth.one_thread_ms = DepthFrame_ms(depth.model, stage, 1, bench.frames, interrupted);
-    depth.threads_ms = DepthFrame_ms(depth.model, stage, threads, bench.frames, interrupted);
+    const Stage with = depth.actor.empty() ? Stage{} : CorridorWith(depth.actor);
+    const auto frame_ms = [&](int of_threads) {
+      return DepthFrame_ms(depth.model, depth.actor, depth.actor.empty() ? stage : with, of_threads, bench.frames,
+                           interrupted);
+    };
+    depth.one_thread_ms = frame_ms(1);
+    depth.threads_ms = frame_ms(threads);
   }
   BenchRays(stage, data.get(), bench);
   try {
@@ -156,7 +182,8 @@ std::string Table(const CameraBench& bench) {
                       "limit (1 / 2 threads)");
   for (const CameraBench::Depth& depth : bench.depth)
     text += fmt::format("  {:<34} {:>7.2f} ms {:>7.2f} ms   {:g} / {:g} ms\n",
-                        fmt::format("{} {}x{}, all effects", depth.model, depth.width, depth.height),
+                        fmt::format("{} {}x{}, {}", depth.model, depth.width, depth.height,
+                                    depth.actor.empty() ? "all effects" : "a moving " + depth.actor),
                         depth.one_thread_ms, depth.threads_ms, depth.limit_one_thread_ms, depth.limit_two_threads_ms);
   if (bench.color)
     text += fmt::format("  {:<34} {:>7.2f} ms {:>10}   {:g} ms ({})\n",
@@ -174,13 +201,15 @@ std::string ToJson(const CameraBench& bench) {
                               {"threads", bench.threads},
                               {"depth", nlohmann::ordered_json::array()}};
   for (const CameraBench::Depth& depth : bench.depth)
-    json["depth"].push_back({{"model", depth.model},
-                             {"width", depth.width},
-                             {"height", depth.height},
-                             {"one_thread_ms", depth.one_thread_ms},
-                             {"threads_ms", depth.threads_ms},
-                             {"limit_one_thread_ms", depth.limit_one_thread_ms},
-                             {"limit_two_threads_ms", depth.limit_two_threads_ms}});
+    json["depth"].push_back(
+        {{"model", depth.model},
+         {"actor", depth.actor.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(depth.actor)},
+         {"width", depth.width},
+         {"height", depth.height},
+         {"one_thread_ms", depth.one_thread_ms},
+         {"threads_ms", depth.threads_ms},
+         {"limit_one_thread_ms", depth.limit_one_thread_ms},
+         {"limit_two_threads_ms", depth.limit_two_threads_ms}});
   json["color"] = nullptr;
   if (bench.color)
     json["color"] = {{"model", bench.color->model},       {"width", bench.color->width},

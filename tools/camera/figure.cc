@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "tools/camera/canvas.h"
+#include "scenarios/judge/canvas.h"
 
 namespace merlin {
 namespace {
@@ -46,15 +46,15 @@ void DrawAxes(Canvas& canvas, const Panel& panel, const Place& place) {
   for (const Tick& tick : place.x.ticks) {
     const double x_px = place.Pixel(tick.value, place.y.low).x();
     canvas.Line({{x_px, top_px}, {x_px, bottom_px}}, 1, kGrid);
-    canvas.Text({x_px, bottom_px + 24}, tick.text, 11, kInk, Align::kMiddle);
+    canvas.Text({x_px, bottom_px + 24}, tick.text, 11, kInk, TextAlign::kMiddle);
   }
   for (const Tick& tick : place.y.ticks) {
     const double y_px = place.Pixel(place.x.low, tick.value).y();
     canvas.Line({{kLeft_px, y_px}, {kRight_px, y_px}}, 1, kGrid);
-    canvas.Text({kLeft_px - 10, y_px + 5}, tick.text, 11, kInk, Align::kRight);
+    canvas.Text({kLeft_px - 10, y_px + 5}, tick.text, 11, kInk, TextAlign::kRight);
   }
   canvas.Line({{kLeft_px, top_px}, {kRight_px, top_px}, {kRight_px, bottom_px}, {kLeft_px, bottom_px}}, 1, kInk, true);
-  canvas.Text({0.5 * (kLeft_px + kRight_px), bottom_px + 52}, panel.x.label, 13, kInk, Align::kMiddle);
+  canvas.Text({0.5 * (kLeft_px + kRight_px), bottom_px + 52}, panel.x.label, 13, kInk, TextAlign::kMiddle);
   canvas.Text({kLeft_px - 60, top_px - 14}, panel.y.label, 13, kInk);
 }
 
@@ -87,7 +87,7 @@ void DrawLegend(Canvas& canvas, const Panel& panel, double top_px) {
 
 std::string ToPng(const Figure& figure) {
   Canvas canvas(kWidth_px, kHeader_px + kPanel_px * static_cast<int>(figure.panels.size()));
-  canvas.Text({kLeft_px - 60, 42}, figure.title, 19, kInk, Align::kLeft, true);
+  canvas.Text({kLeft_px - 60, 42}, figure.title, 19, kInk, TextAlign::kLeft, true);
   canvas.Text({kLeft_px - 60, 74}, figure.subtitle, 12, kInk);
   double top_px = kHeader_px;
   for (const Panel& panel : figure.panels) {

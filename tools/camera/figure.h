@@ -1,4 +1,4 @@
-// Curves for a person: samples as dots over lines that were computed another way.
+// A figure with curves: measured samples as dots, and what a law predicts as lines.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@ namespace merlin {
 
 struct Series {
   std::string name{};
-  bool dots = false;             // else a line; NaN breaks it
-  int color = 0;                 // series of one colour belong together
-  std::vector<double> x{}, y{};  // of one length
+  bool dots = false;             // false: a line, interrupted where a value is NaN
+  int color = 0;                 // index; series with the same index belong together
+  std::vector<double> x{}, y{};  // equally long
 
   void Add(double at, double value) {
     x.push_back(at);
@@ -27,11 +27,11 @@ struct Panel {
 
 struct Figure {
   std::string title{}, subtitle{};  // ASCII
-  std::vector<Panel> panels{};      // from above
+  std::vector<Panel> panels{};      // from top to bottom
 };
 
 std::string ToPng(const Figure& figure);
-// One line a point: panel,series,kind,x,y, with the axes' labels in comment lines.
+// One line per point: panel,series,kind,x,y. Comment lines give the labels of the axes.
 std::string ToCsv(const Figure& figure);
 
 }  // namespace merlin

@@ -1,4 +1,4 @@
-// A frame and its truth as files that other programs read.
+// Writes a frame and its truth in file formats that other programs read.
 #pragma once
 
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace merlin {
 
-// Name to bytes: phase_images, range, amplitude, intensity, flags, truth_* (range, depth, geom, material, sigma, mixed,
+// File names and their bytes: phase_images, range, amplitude, intensity, flags, truth_* (range, depth, geom, material, sigma, mixed,
 // T_world_optical), bias_<effect>, all .npy; range.png (16 bit, millimetres, 0: invalid); cloud.ply (the camera as a
 // body: x forward, y left, z up, coloured by amplitude).
 std::map<std::string, std::string> FrameFiles(const Measurement& measurement, const CameraModel& camera);

@@ -1,4 +1,4 @@
-// Where a camera cannot be: inside matter.
+// Checks that a camera stands in free space, not inside a body.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -9,11 +9,11 @@
 
 namespace merlin {
 
-// The name of a visible geom that holds this point, none if it lies in free space. A plane holds what is below it, a
-// mesh what a ray leaves through an odd number of its triangles.
+// The name of a visible geom that contains this point; none if the point lies in free space. A plane contains everything
+// below it. A mesh contains a point if a ray from there crosses an odd number of its triangles.
 std::optional<std::string> GeomAround(const mjModel* model, const mjData* data, const Eigen::Vector3d& point_world);
 
-// Whether there is anything to see.
+// Whether the model has any visible geom.
 bool HasVisibleGeom(const mjModel* model);
 
 }  // namespace merlin

@@ -14,7 +14,7 @@ std::size_t CenterPixel(const CameraModel& camera) {
          static_cast<std::size_t>(camera.width / 2);
 }
 
-// Third of the rows, third of the columns; at least one pixel.
+// Whether a pixel is in the middle third of the rows and of the columns; at least one pixel is.
 std::vector<std::size_t> MiddleNinth(const CameraModel& camera) {
   std::vector<std::size_t> pixels;
   const auto end = [](int n) { return std::max(n / 3 + 1, n - n / 3); };

@@ -1,4 +1,4 @@
-// Frames of one camera before one stage, and what they say together.
+// Takes frames with one simulated camera in one scene, and summarises them.
 #pragma once
 
 #include <atomic>
@@ -19,14 +19,15 @@ struct Shooting {
   DepthSettings settings;
   sim::TofEffects effects;
   std::uint64_t seed = 1;
-  int frames = 20;  // at the model's highest rate, the first one as the camera is switched on
-  int threads = 1;  // same bits for any number
+  int frames = 20;  // at the camera's highest rate; the first one right after it is switched on
+  int threads = 1;  // any number gives the same bits
 };
 
-// Ranges are unwrapped about the truth, less the wraps of the centre's true range: a wall at 9.0 m reads about 1.505 m
-// at 20 MHz, and noise about a wrap stays noise. Invalid pixels are left out of ranges and amplitude.
+// Each range is unwrapped to the period nearest to its true range; then the wraps of the centre pixel's true range are
+// subtracted. So a wall at 9.0 m reads about 1.505 m at 20 MHz, as the camera would say, and noise across a wrap does not
+// become a jump. Invalid pixels count neither for ranges nor for the amplitude.
 struct Measurement {
-  RangeStatistics center, middle, whole;            // the pixel at (width / 2, height / 2); the middle ninth; all
+  RangeStatistics center, middle, whole;            // pixel (width / 2, height / 2); middle ninth of the image; all
   double valid_share = 0.0, saturated_share = 0.0;  // of all pixels of all frames
   double amplitude_mean = 0.0;                      // electrons; 0 without valid pixels
   double frame_ms = 0.0;                            // median wall time of a frame
@@ -35,7 +36,7 @@ struct Measurement {
   sim::TofTruth truth;                              // of that frame
 };
 
-// Stops early, with the frames it has, when interrupted becomes true after one or more.
+// Takes at least one frame. Stops early, with the frames it has, when interrupted becomes true.
 Measurement Measure(const Shooting& shooting, const sim::TofView& view, const std::atomic<bool>& interrupted);
 
 }  // namespace merlin

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "tools/camera/canvas.h"
+#include "scenarios/judge/canvas.h"
 
 namespace merlin {
 namespace {
@@ -115,7 +115,7 @@ std::string ToPng(const Measurement& m, const std::string& title, const std::str
   const double width_px = m.last.width * scale, height_px = m.last.height * scale;
   const double column_px = std::max(width_px, 360.0) + kBar_px, row_px = height_px + kCaption_px + kMargin_px;
   Canvas canvas(static_cast<int>(kMargin_px + 2.0 * column_px), static_cast<int>(kTitle_px + 2.0 * row_px));
-  canvas.Text({kMargin_px, 46}, title, 19, kInk, Align::kLeft, true);
+  canvas.Text({kMargin_px, 46}, title, 19, kInk, TextAlign::kLeft, true);
   canvas.Text({kMargin_px, 78}, subtitle, 12, kInk);
   int i = 0;
   for (const View& view : Views(m)) {

@@ -1,4 +1,4 @@
-// One frame as a person looks at it.
+// Draws one frame for people.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace merlin {
 
-// A PNG: true range, measured range, error, amplitude, each with its scale. Grey: nothing there, or invalid.
+// A PNG of four images, each with its colour scale: true range, measured range, error and amplitude. Grey pixels are
+// invalid, or see nothing.
 std::string ToPng(const Measurement& measurement, const std::string& title, const std::string& subtitle);
 
 }  // namespace merlin

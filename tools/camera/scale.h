@@ -1,4 +1,4 @@
-// Where the ticks of an axis stand.
+// Chooses the range of an axis and where its ticks are.
 #pragma once
 
 #include <span>
@@ -25,8 +25,8 @@ struct Scale {
   double Share(double value) const;  // 0 at low, 1 at high
 };
 
-// Covers the finite values (where logarithmic: those above 0), ends on whole steps of 1, 2 or 5 times a power of ten.
-// Without any value, and with one alone, it still has a length.
+// Covers all finite values (on a logarithmic axis: all finite values above 0). Both ends are multiples of a step, which is 1,
+// 2 or 5 times a power of ten. The scale has a length even if there is no value, or only one.
 Scale ScaleFor(std::span<const double> values, const Axis& axis);
 
 }  // namespace merlin

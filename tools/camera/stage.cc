@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "robot/base/error.h"
+#include "sim/actors/actors.h"
 #include "sim/world/room.h"
 #include "tools/camera/inside.h"
 
@@ -82,6 +83,7 @@ Stage RoomStage(const RoomView& view) {
   const std::string room = view.room.string();
   const sim::SpecPtr spec = sim::ReadRoom(view.room, view.curtain_closed);
   spec->compiler.discardvisual = 0;
+  sim::Actors::AddTo(spec.get(), view.actors, {});
   Stage stage;
   stage.model.reset(mj_compile(spec.get(), nullptr));
   const mjModel* model = stage.model.get();

@@ -1,4 +1,4 @@
-// What the camera is put before: a wall of its own world, a room of ours, or a scene built for one experiment.
+// The scenes that a camera is studied in: a single wall, one of the rooms, or geoms made for one experiment.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "robot/types/se3.h"
+#include "sim/actors/actor_config.h"
 #include "sim/rays/ray_scene.h"
 #include "sim/tof/surroundings.h"
 #include "sim/tof/tof_camera.h"
@@ -18,7 +19,7 @@
 
 namespace merlin {
 
-// x forward, y left, z up to z forward, x right, y down (REP 103).
+// T_body_optical: from the optical frame (z forward, x right, y down) to the body frame (x forward, y left, z up); REP 103.
 Pose BodyOptical();
 
 struct Stage {
@@ -33,7 +34,8 @@ struct Stage {
   }
 };
 
-// The geoms of a <worldbody>, in their order, and what they are made of; the camera's body frame is the world's.
+// geoms: the content of a MuJoCo <worldbody>; material: one for each geom, in the same order. The camera stands at the
+// world's origin and looks along x.
 Stage BuildStage(const std::string& geoms, const std::vector<sim::Material>& material);
 
 struct Wall {
@@ -49,8 +51,9 @@ Stage WallStage(const Wall& wall);
 struct RoomView {
   std::filesystem::path room, materials;
   bool curtain_closed = false;
-  Pose T_world_body = Pose::Identity();  // of the camera: x forward, y left, z up
-  std::optional<double> sun_w_m2_nm{};   // instead of the room's
+  Pose T_world_body = Pose::Identity();    // of the camera: x forward, y left, z up
+  std::optional<double> sun_w_m2_nm{};     // instead of the room's
+  std::vector<sim::ActorConfig> actors{};  // away until stage.bodies puts them somewhere
 };
 // Throws InputError: a room or materials file that cannot be used, nothing to see in it, a camera inside a geom, a sun
 // set where the room has none.

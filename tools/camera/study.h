@@ -1,5 +1,5 @@
-// Experiments with one model of camera: samples of the simulated camera over what a law or another way of computing
-// says.
+// Experiments that compare the simulated camera with a law, or with another method of computing the same thing. Each study
+// switches on only the effects that it is about, and gives one figure.
 #pragma once
 
 #include <atomic>
@@ -23,10 +23,9 @@ struct StudyCamera {
 
 std::vector<std::string> StudyNames();
 
-// Throws InputError for an unknown study, naming the nearest.
+// Throws InputError for an unknown study; the message names the most similar one.
 void CheckStudyName(const std::string& name);
 
-// With only the effects switched on that the study is about.
 Figure Study(const std::string& name, const StudyCamera& camera);
 
 }  // namespace merlin

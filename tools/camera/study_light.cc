@@ -1,4 +1,4 @@
-// Light that arrives where it does not belong: by way of another wall, and between lens and chip.
+// Studies of stray light: multipath between two walls, and scatter between lens and chip.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace merlin::study {
 namespace {
 
-// Two walls that meet at a right angle on the axis, this far away; the axis halves the angle.
+// Two walls at a right angle. Their edge lies on the optical axis, which halves the angle.
 struct Corner {
   double distance_m;
 

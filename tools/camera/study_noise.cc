@@ -115,7 +115,7 @@ Figure SunStudy(const StudyCamera& of) {
     Series law{.name = fmt::format("law, {:g} m", d), .color = color};
     Series dots{.name = "samples", .dots = true, .color = color++};
     const double signal_e = Signal_e(camera, kAlbedo, 1.0, d);
-    // Sun and lamp take the same way from the wall to the pixel: N_b / N_s = E dlambda d^2 / I.
+    // Light of sun and lamp takes the same path from the wall to the pixel: N_b / N_s = E dlambda d^2 / I.
     const auto background_e = [&](double sun) {
       return signal_e * sun * camera.errors.filter_nm * d * d / camera.errors.lamp_w_per_sr;
     };

@@ -1,4 +1,4 @@
-// What the studies share: cameras that look at little, one frame without noise, the sheet's laws.
+// What several studies need: cameras cropped to a few pixels, single frames, and the laws of the camera's data sheet.
 #pragma once
 
 #include <complex>
@@ -11,30 +11,34 @@ namespace merlin::study {
 
 using Phasor = std::complex<double>;
 
-// No effect but these.
+// These effects on, all others off.
 sim::TofEffects Only(std::initializer_list<bool sim::TofEffects::*> on, bool calibrated = true);
 
-// The middle of the picture alone, this many pixels wide and high: same lens and chip, less to compute.
+// A camera with the same lens and chip that has only the middle of the image, to save time. width, height: in pixels.
 DepthCameraSheet Cropped(DepthCameraSheet sheet, int width, int height);
 
-// The camera's middle pixel alone, at its first modulation frequency.
+// A camera that has only the middle pixel, and one modulation frequency: the first.
 StudyCamera OnePixel(StudyCamera camera);
 
 Shooting ShootingOf(const StudyCamera& camera, const sim::TofEffects& effects, int frames);
 
-// One frame, and what the truth says of it.
+// One frame with its truth.
 Measurement OneFrame(const StudyCamera& camera, const sim::TofEffects& effects, const sim::TofView& view);
 
-double MiddleRange_m(const Measurement& frame);  // measured, unwrapped about the truth and less the centre's wraps
+// The measured range of the middle pixels, unwrapped as Measurement says.
+double MiddleRange_m(const Measurement& frame);
 
-// Evenly spaced, ends included; the second in the logarithm.
+// Evenly spaced values from one end to the other, both included. LogSteps: evenly spaced in the logarithm.
 std::vector<double> Steps(double from, double to, int count);
 std::vector<double> LogSteps(double from, double to, int count);
 
-// A Lambertian surface seen from the lamp: electrons of both taps in one sub-frame, K rho cos(theta) T / d^2.
+// The signal of a Lambertian surface that the lamp lights: electrons of both taps in one sub-frame, K rho cos(theta) T / d^2
+// (K: DepthCameraSheet::signal_e_m2_per_us).
 double Signal_e(const StudyCamera& camera, double albedo, double cos_incidence, double range_m);
 
-// Standard deviation of range of the two-tap, four-phase pixel (R. Lange, PhD thesis, Siegen 2000, for two taps).
+// Standard deviation of the range of a pixel with two taps and four phases. Source: R. Lange, "3D time-of-flight distance
+// measurement with custom solid-state image sensors in CMOS/CCD-technology", PhD thesis, University of Siegen, 2000; here for
+// two taps.
 double SigmaLaw_m(const StudyCamera& camera, double signal_e, double background_e);
 
 double Phase_rad(const StudyCamera& camera, double range_m);

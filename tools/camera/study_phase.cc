@@ -1,4 +1,4 @@
-// What distorts the phase of a single surface: harmonics, and motion between the sub-frames.
+// Studies of phase errors on a single surface: harmonics, and motion between the sub-frames.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// `merlin bench`: how long things take on this machine, beside what they may take.
+// `merlin bench`: measures how long things take on this machine, and shows the limits beside the results.
 #include "tools/register/bench.h"
 
 #include <fmt/format.h>

@@ -67,7 +67,8 @@ void Finish(const CalibrateArguments& arguments, const CarDescription& car, cons
   }
   Print(car, found, true_car);
   fmt::print(
-      "  residuals {:.2f} of what the tape and the play allow\nfile: {} (for a scenario: car: {{calibration: {}}})\n",
+      "  residuals: {:.2f} times the errors expected of tape and play\nfile: {} (for a scenario: car: {{calibration: "
+      "{}}})\n",
       found.residual_rms, arguments.out, arguments.out);
 }
 
@@ -86,7 +87,7 @@ int CalibrateTwin(const CalibrateArguments& arguments) {
   return kPass;
 }
 
-// A car that is off its description by what a careless assembly leaves, on every floor there is.
+// Calibrates a car with the errors of a careless assembly on every floor, and measures its odometry before and after.
 int StudyOdometry(const CalibrateArguments& arguments) {
   constexpr double kLimit_percent = 1.0;
   const sim::Materials materials = sim::ReadMaterials(Home() / "models/materials.yaml");
@@ -116,7 +117,8 @@ int StudyOdometry(const CalibrateArguments& arguments) {
     fmt::print("{}", JsonText(json));
   else
     fmt::print(
-        "odometry's error of position at the end of a manoeuvre, in percent of its path; limit {:g} % after\n"
+        "position error of the odometry at the end of a manoeuvre, in percent of its path; limit after calibration: "
+        "{:g} %\n"
         "  {:<16} {:<20} {:>9} {:>11} {:>11}\n{}",
         kLimit_percent, "surface", "manoeuvre", "path", "before", "after", rows);
   return pass ? kPass : kFail;
@@ -133,7 +135,7 @@ int Calibrate(const CalibrateArguments& arguments) {
   const int sources =
       (arguments.drives.empty() ? 0 : 1) + (arguments.robot.empty() ? 0 : 1) + (arguments.study ? 1 : 0);
   if (sources != 1)
-    throw InputError("calibrate odometry", "what is it to calibrate from?",
+    throw InputError("calibrate odometry", "it needs one source of drives",
                      "one of a file of drives, --robot twin or --study", sources == 0 ? "none" : "several");
   if (arguments.study) return StudyOdometry(arguments);
   CheckOutputFile(arguments.out);
@@ -147,16 +149,16 @@ int Calibrate(const CalibrateArguments& arguments) {
 
 void AddCalibrate(CLI::App& app, int& exit_code) {
   const auto a = std::make_shared<CalibrateArguments>();
-  CLI::App* calibrate = app.add_subcommand("calibrate", "finds the values that a description only estimates");
+  CLI::App* calibrate = app.add_subcommand("calibrate", "measures what the car's description only estimates");
   calibrate->require_subcommand(1);
   CLI::App* odometry =
       calibrate->add_subcommand("odometry", "wheel radius, wheelbase and steering offset, from drives");
   odometry->add_option("drives", a->drives,
                        "YAML: straights: [{encoder_counts, distance_m}], circles: [{steering_rad, diameter_m}]");
-  odometry->add_option("--robot", a->robot, "twin: lets it drive and measures it, tape errors included")
+  odometry->add_option("--robot", a->robot, "twin: the twin drives and is measured, with the errors of a tape")
       ->check(CLI::IsMember({"twin"}));
-  CLI::Option* study =
-      odometry->add_flag("--study", a->study, "circles and squares of the twin on every floor, before and after");
+  CLI::Option* study = odometry->add_flag(
+      "--study", a->study, "the twin drives circles and squares on every floor, before and after calibration");
   odometry->add_option("--scenario", a->scenario, "whose car and seed; default corridor_short");
   odometry->add_option("--set", a->sets, "a.b=c, over the scenario's file; may be repeated")->allow_extra_args(false);
   odometry->add_option("--out", a->out, "default calibration.yaml; a scenario takes it as car.calibration")

@@ -35,7 +35,7 @@ struct CameraArguments {
 
 #if MERLIN_TWIN
 
-// "1,2.5,x": all of them numbers, finite and of this count.
+// Reads a list such as "1,2.5". Throws InputError if a part is not a finite number, or if there are too few or too many.
 std::vector<double> Numbers(const std::string& option, const std::string& text, char between, std::size_t least,
                             std::size_t most, const std::string& expected) {
   std::vector<double> numbers;
@@ -68,7 +68,7 @@ Pose ReadPose(const std::string& text) {
   return T_world_body;
 }
 
-// What is not asked for is 1000 us and 20 MHz, or the nearest the model has.
+// Settings that are not given are 1000 us and 20 MHz, or the nearest valid ones of the camera.
 DepthSettings SettingsOf(const CameraArguments& arguments, const DepthCameraSheet& sheet) {
   DepthSettings usual = NearestSettings(sheet, {}), asked = usual;
   if (arguments.integration_us) asked.integration_s = *arguments.integration_us * 1e-6;
@@ -85,7 +85,8 @@ DepthSettings SettingsOf(const CameraArguments& arguments, const DepthCameraShee
   const DepthSettings nearest = NearestSettings(sheet, asked);
   const auto say = [](const char* what, double from, double to, const char* unit) {
     if (from != to)
-      fmt::print(stderr, "merlin: {} {:g} {} instead of {:g} {}: the nearest valid\n", what, to, unit, from, unit);
+      fmt::print(stderr, "merlin: {}: {:g} {} instead of {:g} {}, the nearest valid value\n", what, to, unit, from,
+                 unit);
   };
   say("integration time", asked.integration_s * 1e6, nearest.integration_s * 1e6, "us");
   say("frequency", asked.frequency_hz * 1e-6, nearest.frequency_hz * 1e-6, "MHz");
@@ -93,7 +94,7 @@ DepthSettings SettingsOf(const CameraArguments& arguments, const DepthCameraShee
   return nearest;
 }
 
-// Each scene has its own options.
+// Refuses options that do not belong to the chosen scene.
 void RefuseMixtures(const CameraArguments& a) {
   const auto refuse = [](bool given, const char* option, const char* belongs_to) {
     if (given) throw InputError(option, std::string("belongs to ") + belongs_to);
@@ -104,14 +105,13 @@ void RefuseMixtures(const CameraArguments& a) {
     refuse(a.sun_w_m2_nm.has_value(), "--sun", "a single measurement; a study brings its own scenes");
     refuse(a.effects.has_value(), "--effects", "a single measurement; a study brings its own effects");
   } else if (wall == room) {
-    throw InputError("camera", "what is it to look at?", "either --wall or --room", wall ? "both" : "neither");
+    throw InputError("camera", "it needs one scene", "either --wall or --room", wall ? "both" : "neither");
   }
   refuse(!wall && a.albedo, "--albedo", "--wall");
   refuse(!wall && a.tilt_deg, "--tilt-deg", "--wall");
   refuse(!room && !a.pose.empty(), "--pose", "--room");
   refuse(!room && !a.curtain.empty(), "--curtain", "--room");
-  if (room && a.pose.empty())
-    throw InputError("--room", "where in it does the camera stand?", "--pose x,y,z,roll,pitch,yaw");
+  if (room && a.pose.empty()) throw InputError("--room", "the camera has no pose in it", "--pose x,y,z,roll,pitch,yaw");
 }
 
 Stage StageOf(const CameraArguments& a) {
@@ -212,7 +212,7 @@ void AddCamera(CLI::App& app, int& exit_code) {
   camera->add_option("--effects", a->effects, "all (default), raw, ideal, or names: noise,adc or -noise");
   camera->add_flag("--nearest", a->nearest, "take the nearest valid settings instead of refusing");
   camera->add_option("--seed", a->seed, "of the noise; default 1")->check(WholeNumber);
-  camera->add_option("--threads", a->threads, "same bits for any number; default 2")->check(CLI::Range(1, 256));
+  camera->add_option("--threads", a->threads, "any number gives the same bits; default 2")->check(CLI::Range(1, 256));
   camera->add_option("--out", a->out, "folder for the files; default runs/camera-<model>")->check(NotEmpty);
   camera->add_option(
       "--study", a->study,

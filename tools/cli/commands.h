@@ -15,6 +15,7 @@ extern std::atomic<bool> interrupted;
 
 void AddRun(CLI::App& app, int& exit_code);
 void AddDrive(CLI::App& app, int& exit_code);
+void AddEmulate(CLI::App& app, int& exit_code);
 void AddCamera(CLI::App& app, int& exit_code);
 void AddCalibrate(CLI::App& app, int& exit_code);
 void AddRegister(CLI::App& app, int& exit_code);

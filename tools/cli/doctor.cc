@@ -53,7 +53,7 @@ struct Report {
   Models models;
   unsigned cpu_cores = 0;
 
-  // A run's: 2 for a wrong MERLIN_HOME, 3 for a machine that draws no picture. Without the twin none is drawn.
+  // The exit code of a run here. Without the twin no pictures are drawn.
   int ExitCode() const {
     const bool draws = std::any_of(gl.begin(), gl.end(), [](const GlProbe& probe) { return probe.works; });
     return !models.Complete() ? 2 : draws || !MERLIN_TWIN ? 0 : 3;
@@ -74,8 +74,8 @@ void PrintText(const Report& report) {
   for (const LinkedWork& work : LinkedWorks())
     if (!work.version.empty()) fmt::print(" {} {};", work.name, work.version);
   fmt::print(" terms: merlin doctor --licenses\n");
-  fmt::print("{}\n", report.ExitCode() == 0 ? "All that a run needs works here."
-                                            : "Something a run may need does not work here: see above.");
+  fmt::print("{}\n", report.ExitCode() == 0 ? "Everything that a run needs works here."
+                                            : "Something that a run may need does not work here: see above.");
 }
 
 void PrintJson(const Report& report) {

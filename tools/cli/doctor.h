@@ -3,9 +3,9 @@
 
 namespace merlin::cli {
 
-// Prints to stdout. licenses: everything linked and its terms instead of the state of the machine; json: for machines.
-// Returns the exit code that a run would have: 0; 2 where models or scenarios are missing (MERLIN_HOME); 3 when this
-// machine cannot draw.
+// Prints the state of the machine to stdout, or with `licenses` everything that is linked and its licence. json: as JSON.
+// Returns the exit code that a run would have: 0 all is well; 2 models or scenarios are missing (MERLIN_HOME); 3 this machine
+// cannot draw pictures.
 int Doctor(bool licenses, bool json);
 
 }  // namespace merlin::cli

@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "robot/base/error.h"
+#include "scenarios/config/believed_car.h"
+#include "scenarios/config/hardware_check.h"
 #include "scenarios/config/hardware_file.h"
+#include "scenarios/run/preflight.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/doctor.h"
 #include "tools/json_text.h"
@@ -18,56 +21,103 @@ namespace {
 
 constexpr Duration kListen = std::chrono::seconds(3);  // to each device
 
-void PrintJson(const std::string& robot, const std::vector<DeviceReport>& reports) {
+struct RobotArguments {
+  std::string robot, scenario = "corridor_loop";
+  bool move = false, json = false;
+};
+
+// What the check of a car found.
+struct RobotReport {
+  std::vector<DeviceReport> devices;
+  std::vector<std::string> preflight;  // faults; empty too where a device does not work, so that nothing was tried
+
+  bool devices_work() const { return std::ranges::all_of(devices, &DeviceReport::works); }
+  bool well() const { return devices_work() && preflight.empty(); }
+};
+
+// All devices together, as a run uses them.
+std::vector<std::string> Preflight(const HardwareConfig& config, const Scenario& scenario, bool move) {
+  RealClock clock(config.clock, Time::max());
+  HardwareRobot hardware(config, CamerasOf(scenario), clock);
+  std::vector<std::string> faults = hardware.WaitUntilReady(kListen);
+  if (!faults.empty()) return faults;
+  const CarDescription car = BelievedCar(scenario.car);
+  faults = PreflightAtRest(hardware.robot(), car);
+  if (faults.empty() && move) faults = PreflightMoving(hardware.robot(), car, interrupted);
+  return faults;
+}
+
+void PrintJson(const std::string& robot, const RobotReport& report) {
   nlohmann::ordered_json devices = nlohmann::ordered_json::array();
-  bool well = true;
-  for (const DeviceReport& report : reports) {
-    devices.push_back({{"device", report.device}, {"works", report.works()}, {"detail", report.complaint}});
-    well &= report.works();
-  }
-  fmt::print("{}", JsonText({{"well", well}, {"robot", robot}, {"devices", devices}}));
+  for (const DeviceReport& device : report.devices)
+    devices.push_back({{"device", device.device}, {"works", device.works()}, {"detail", device.complaint}});
+  fmt::print("{}",
+             JsonText({{"well", report.well()},
+                       {"robot", robot},
+                       {"devices", devices},
+                       {"preflight", report.devices_work() ? nlohmann::ordered_json(report.preflight) : nullptr}}));
+}
+
+void PrintText(const RobotReport& report, bool move) {
+  for (const DeviceReport& device : report.devices)
+    fmt::print("{}\n", device.works() ? device.device + ": works" : device.complaint);
+  for (const std::string& fault : report.preflight) fmt::print("{}\n", fault);
+  if (report.well())
+    fmt::print("The car is fit to drive{}.\n", move ? "" : ", as far as can be told at rest (--move: and moving)");
 }
 
 // Of a run with these devices: it opens them in this order, and stops at the first that cannot be opened.
-int ExitCodeOf(const std::vector<DeviceReport>& reports) {
+int ExitCodeOf(const RobotReport& report) {
   using enum DeviceReport::Fault;
-  for (const DeviceReport& report : reports)
-    if (report.fault == kBadConfig || report.fault == kNotOpened)
-      return report.fault == kBadConfig ? kBadInput : kCannot;
-  return std::ranges::all_of(reports, &DeviceReport::works) ? kPass : kCannot;
+  for (const DeviceReport& device : report.devices)
+    if (device.fault == kBadConfig || device.fault == kNotOpened)
+      return device.fault == kBadConfig ? kBadInput : kCannot;
+  return report.well() ? kPass : kCannot;
 }
 
-// The devices of a real car, each by itself.
-int CheckRobot(const std::string& robot, const std::string& scenario, bool json) {
-  const std::string hardware = "hardware:";
+// The devices of a real car: each by itself, then all of them together.
+int CheckRobot(const RobotArguments& arguments) {
+  const std::string hardware = "hardware:", &robot = arguments.robot;
   if (!robot.starts_with(hardware) || robot.size() == hardware.size())
     throw InputError("--robot", "no devices to check", "hardware:FILE, which names them", "'" + robot + "'");
   const HardwareConfig config = ReadHardwareFile(robot.substr(hardware.size()));
-  const auto reports = CheckDevices(config, CamerasOf(ReadScenario(scenario, {})), kListen);
-  if (json) PrintJson(robot, reports);
-  for (const DeviceReport& report : reports)
-    if (!json) fmt::print("{}\n", report.works() ? report.device + ": works" : report.complaint);
-  return ExitCodeOf(reports);
+  const Scenario scenario = ReadScenario(arguments.scenario, {});
+  RequireFits(config, scenario, robot.substr(hardware.size()));
+  RobotReport report{CheckDevices(config, CamerasOf(scenario), kListen), {}};
+  if (report.devices_work()) report.preflight = Preflight(config, scenario, arguments.move);
+  if (interrupted) return kInterrupted;
+  if (arguments.json)
+    PrintJson(robot, report);
+  else
+    PrintText(report, arguments.move);
+  return ExitCodeOf(report);
 }
 
 }  // namespace
 
 void AddDoctor(CLI::App& app, int& exit_code) {
   struct Flags {
-    bool licenses = false, json = false;
-    std::string robot, scenario = "corridor_loop";
+    bool licenses = false;
+    RobotArguments robot;
   };
   const auto flags = std::make_shared<Flags>();
   CLI::App* doctor = app.add_subcommand("doctor", "what works here: GL back ends, devices, versions, licences");
   CLI::Option* licenses = doctor->add_flag("--licenses", flags->licenses, "everything linked, and its terms");
-  CLI::Option* robot =
-      doctor->add_option("--robot", flags->robot, "hardware:FILE: check the devices that FILE names; moves nothing");
+  CLI::Option* robot = doctor->add_option(
+      "--robot", flags->robot.robot,
+      "hardware:FILE: check that the devices that FILE names deliver at their rates, and plausible values; moves "
+      "nothing. Exit 3: one does not");
   robot->check(NotEmpty)->excludes(licenses);
-  doctor->add_option("--scenario", flags->scenario, "whose cameras these are; default corridor_loop")->needs(robot);
-  doctor->add_flag("--json", flags->json, "for machines");
+  doctor->add_option("--scenario", flags->robot.scenario, "whose car and cameras these are; default corridor_loop")
+      ->needs(robot);
+  doctor
+      ->add_flag("--move", flags->robot.move,
+                 "then drive 30 cm to and fro, to check wheels, stopping and compass; needs half a metre of free floor "
+                 "ahead and at both sides")
+      ->needs(robot);
+  doctor->add_flag("--json", flags->robot.json, "for machines");
   doctor->callback([flags, &exit_code] {
-    exit_code = flags->robot.empty() ? Doctor(flags->licenses, flags->json)
-                                     : CheckRobot(flags->robot, flags->scenario, flags->json);
+    exit_code = flags->robot.robot.empty() ? Doctor(flags->licenses, flags->robot.json) : CheckRobot(flags->robot);
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -11,19 +12,18 @@
 #include <vector>
 
 #include "robot/base/error.h"
+#include "robot/description/description.h"
 #include "robot/hardware/operator/joystick_device.h"
+#include "scenarios/config/names.h"
 #include "scenarios/config/scenario.h"
+#include "scenarios/judge/output_folder.h"
 #include "tools/cli/commands.h"
+#include "tools/cli/robots.h"
+#include "tools/cli/terminal.h"
 #include "tools/drive/keys.h"
 #include "tools/drive/raw_terminal.h"
 #include "tools/drive/stick.h"
 #if MERLIN_TWIN
-#include "robot/description/description.h"
-#include "scenarios/config/names.h"
-#include "scenarios/judge/output_folder.h"
-#include "scenarios/run/plugs.h"
-#include "tools/cli/run_options.h"
-#include "tools/cli/terminal.h"
 #include "tools/drive/radio_hand.h"
 #endif
 
@@ -39,8 +39,6 @@ struct DriveArguments {
   bool keyboard = false, autonomy = false;
 };
 
-#if MERLIN_TWIN
-
 constexpr char kKeysHelp[] =
     "w a s d or arrows drive, space stops, p autonomy, Shift overrides the obstacle stop, q quits\n";
 constexpr char kStickHelp[] = "stick drives, button 0 overrides the obstacle stop, button 1 autonomy, button 7 quits\n";
@@ -55,13 +53,13 @@ class Station {
       joystick_.emplace(arguments.joystick);
     fmt::print(stderr, "{}", joystick_ ? kStickHelp : kKeysHelp);
   }
-  ManualWish Wish(Time now) {
+  ManualCommand Wish(Time now) {
     if (joystick_) {
       const bool there = joystick_->Read();
       return stick_.Update(joystick_->state(), there, now);
     }
     keys_.Feed(terminal_->Read(), now);
-    ManualWish wish = keys_.Wish(now);
+    ManualCommand wish = keys_.Wish(now);
     wish.quit = wish.quit || !terminal_->there();
     return wish;
   }
@@ -76,18 +74,18 @@ class Station {
 // What the operator sees: five times a second on a terminal, once a second elsewhere, and at once when the driver changes.
 class StatusLine {
  public:
-  void Show(Time now, const HandStatus& status) {
-    const bool changed = status.arbitration.driver != driver_;
-    driver_ = status.arbitration.driver;
-    if (now < next_ && !changed) return;
-    next_ = now + std::chrono::milliseconds(line_.on_terminal() ? 200 : 1000);
-    const char* battery = status.energy == EnergyLevel::kEnough ? ""
-                          : status.energy == EnergyLevel::kLow  ? " LOW"
-                                                                : " EMPTY";
-    line_.Show(fmt::format("{:7.1f} s  {:5.2f} m/s  steering {:+5.1f} deg  battery {:5.2f} V{}  {}{}{}", Seconds(now),
-                           status.speed_m_s, status.state.steering_rad * 180.0 / std::numbers::pi,
-                           status.state.battery_v, battery, Name(driver_), status.doing.empty() ? "" : ": ",
-                           status.doing));
+  void Show(const LoopState& state) {
+    const bool changed = state.arbitration.driver != driver_;
+    driver_ = state.arbitration.driver;
+    if (state.now < next_ && !changed) return;
+    next_ = state.now + std::chrono::milliseconds(line_.on_terminal() ? 200 : 1000);
+    const char* battery = state.energy == EnergyLevel::kEnough ? ""
+                          : state.energy == EnergyLevel::kLow  ? " LOW"
+                                                               : " EMPTY";
+    const std::string doing = driver_ == Driver::kAutonomy ? ": " + Doing(state) : "";
+    line_.Show(fmt::format("{:7.1f} s  {:5.2f} m/s  steering {:+5.1f} deg  battery {:5.2f} V{}  {}{}",
+                           Seconds(state.now), state.speed_m_s, state.drive.steering_rad * 180.0 / std::numbers::pi,
+                           state.drive.battery_v, battery, Name(driver_), doing));
   }
   ~StatusLine() { line_.Keep(); }
 
@@ -97,7 +95,7 @@ class StatusLine {
   ProgressLine line_;
 };
 
-RunOptions OptionsOf(const DriveArguments& arguments) {
+RunOptions OptionsOf(const DriveArguments& arguments, PlugMaker& make_plug) {
   RunOptions options;
   options.name = std::filesystem::path(arguments.scenario).stem().string();
   std::vector<std::string> sets = arguments.sets;
@@ -105,7 +103,7 @@ RunOptions OptionsOf(const DriveArguments& arguments) {
   sets.push_back("duration_s=" + arguments.duration_s);
   sets.push_back("checks={}");  // they are the pilot's
   options.scenario = ReadScenario(arguments.scenario, sets);
-  SetRobot(arguments.robot, options);
+  make_plug = PlugOf(arguments.robot, options);
   if (options.robot == RobotKind::kTwin) options.pace = 1.0;  // the others keep the clock's
   options.out = arguments.out.empty() ? std::filesystem::path("runs") / (options.name + "-drive")
                                       : std::filesystem::path(arguments.out);
@@ -115,40 +113,48 @@ RunOptions OptionsOf(const DriveArguments& arguments) {
   return options;
 }
 
+// What becomes of the operator's wishes on their way to the car.
+using Transmit = std::function<ManualCommand(const ManualCommand&, Time now)>;
+
+Transmit RadioOf(int baud, [[maybe_unused]] const HandLimits& limits, [[maybe_unused]] std::uint64_t seed) {
+  if (baud == 0) return [](const ManualCommand& wish, Time) { return wish; };
+#if MERLIN_TWIN
+  return [radio = std::make_shared<RadioHand>(RadioConfig{.baud = baud}, limits, seed)](
+             const ManualCommand& wish, Time now) { return radio->Send(wish, now); };
+#else
+  throw InputError("--radio", "this program was built without the twin, and has no model of a radio");
+#endif
+}
+
 int Drive(const DriveArguments& arguments) {
-  RunOptions options = OptionsOf(arguments);
+  PlugMaker make_plug;
+  RunOptions options = OptionsOf(arguments, make_plug);
   const CarDescription car = ReadCar(CarFile(options.scenario.car.model));
   const HandLimits limits{std::min(arguments.speed_m_s, car.drivetrain.speed_max_m_s), car.steering_max_rad};
-  std::optional<RadioHand> radio;
-  if (arguments.radio_baud > 0) radio.emplace(RadioConfig{.baud = arguments.radio_baud}, limits, options.scenario.seed);
+  const Transmit transmit = RadioOf(arguments.radio_baud, limits, options.scenario.seed);
   RunReport report;
   {
     StatusLine line;
     Station station(arguments, limits);
-    options.hand = [&](Time now) {
-      ManualWish wish = station.Wish(now);
+    options.manual = [&](Time now) {
+      ManualCommand wish = station.Wish(now);
       wish.autonomy = wish.autonomy && arguments.autonomy;
-      return radio ? radio->Send(wish, now) : wish;
+      return transmit(wish, now);
     };
-    options.hand_status = [&line](Time now, const HandStatus& status) { line.Show(now, status); };
-    report = RunScenario(options, interrupted);
+    options.station = [&line](const LoopState& state) { line.Show(state); };
+    report = RunScenario(options, make_plug, interrupted);
   }
   const RunResult& result = report.result;
   if (!result.fault.empty()) fmt::print("stopped: {}\n", result.fault);
   if (!report.note.empty()) fmt::print("note: {}\n", report.note);
-  fmt::print("drove {:.2f} m in {:.1f} s, {} collisions\nfiles: {} (look at map.png)\n",
-             result.metrics.distance_m.value_or(0.0), result.metrics.sim_time_s.value_or(0.0),
-             result.metrics.collisions.value_or(0), options.out.string());
+  const auto collisions = result.metrics.collisions;
+  fmt::print("drove {:.2f} m in {:.1f} s{}\nfiles: {} (look at map.png)\n", result.metrics.distance_m.value_or(0.0),
+             result.metrics.sim_time_s.value_or(0.0), collisions ? fmt::format(", {} collisions", *collisions) : "",
+             options.out.string());
   std::fflush(stdout);  // what was told so far comes before the error
   if (report.error) std::rethrow_exception(report.error);
-  return result.verdict == Verdict::kPass ? kPass : result.verdict == Verdict::kInterrupted ? kInterrupted : kFail;
+  return ExitCodeOf(result.verdict);
 }
-
-#else
-
-int Drive(const DriveArguments&) { throw MachineError("this build has no twin (MERLIN_TWIN=OFF)"); }
-
-#endif
 
 std::string TopSpeed(const std::string& text) {
   double speed_m_s = 0.0;  // what is no number, CLI11 refuses

@@ -1,4 +1,4 @@
-// `merlin eval`: how far an estimated trajectory lies from the true one, in the figures of the evo package.
+// `merlin eval`: measures the error of an estimated trajectory, with the same figures as the evo package.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "robot/base/error.h"
-#include "robot/base/read_file.h"
+#include "robot/base/files.h"
 #include "scenarios/judge/alignment.h"
 #include "scenarios/judge/tum_file.h"
 #include "tools/cli/commands.h"
@@ -42,7 +42,7 @@ std::string Span(const Trajectory& trajectory) {
   return fmt::format("{:.3f} to {:.3f} s", Seconds(trajectory.front().stamp), Seconds(trajectory.back().stamp));
 }
 
-// Whether the positions are the same but for the last digits of a file; of at least one pair.
+// Whether all positions are the same, apart from rounding in the file. There must be at least one pair.
 bool InOnePlace(const std::vector<PosePair>& pairs, Pose PosePair::*side) {
   constexpr double kSame_m = 1e-6;
   return std::ranges::all_of(pairs, [&](const PosePair& pair) {
@@ -50,7 +50,7 @@ bool InOnePlace(const std::vector<PosePair>& pairs, Pose PosePair::*side) {
   });
 }
 
-// Three positions at least, and not all the same, are what an alignment and a figure need.
+// An alignment needs at least three positions that are not all the same.
 void CheckPairs(const EvalArguments& arguments, const std::vector<PosePair>& pairs) {
   if (pairs.size() < 3)
     throw InputError(

@@ -1,4 +1,4 @@
-// Which of the GL back ends open on this machine.
+// Finds out which GL back ends work on this machine.
 #pragma once
 
 #include <string>
@@ -12,8 +12,9 @@ struct GlProbe {
   std::string detail;  // the renderer's name, or why it does not open
 };
 
-// Opens each back end and draws a picture with it, in a child process of its own: MuJoCo binds GL once a process, and a
-// driver may crash or hang (20 s are given). Call from a program with one thread. Empty without the twin.
+// Opens each back end and draws a picture with it. Each gets its own child process, because MuJoCo binds GL once per process
+// and because a driver may crash or hang (limit: 20 s). Must be called while the program has one thread. Without the twin
+// the result is empty.
 std::vector<GlProbe> ProbeGl();
 
 }  // namespace merlin::cli

@@ -1,4 +1,4 @@
-// `merlin list`: what there is, one whole sentence each.
+// `merlin list`: lists scenarios, cameras, rooms and behaviors, with one sentence about each.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "autonomy/pilot.h"
+#include "autonomy/behaviors/table.h"
 #include "scenarios/config/names.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/description.h"
@@ -44,7 +44,7 @@ std::vector<Item> BehaviorItems() {
   return items;
 }
 
-// Wrapped beside the names on a terminal; a line each elsewhere, for grep.
+// On a terminal the sentences are wrapped beside the names; elsewhere each item is one line, for grep.
 void Print(const std::string& kind, const std::vector<Item>& items) {
   constexpr int kLeastText_columns = 30;
   int names_columns = 20;

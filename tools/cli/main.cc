@@ -15,7 +15,7 @@ std::atomic<bool> interrupted{false};
 
 namespace {
 
-// Once: the run ends in good order. Again: at once.
+// The first Ctrl-C ends the run in good order, the second one ends the program at once.
 void OnInterrupt(int) {
   if (!interrupted.exchange(true)) return;
   RestoreTerminal();
@@ -30,6 +30,7 @@ int Main(int argc, char** argv) {
   int exit_code = kPass;
   AddRun(app, exit_code);
   AddDrive(app, exit_code);
+  AddEmulate(app, exit_code);
   AddCamera(app, exit_code);
   AddCalibrate(app, exit_code);
   AddOptimize(app, exit_code);
@@ -57,8 +58,8 @@ int main(int argc, char** argv) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGHUP, &action, nullptr);
-  signal(SIGPIPE, SIG_IGN);  // whoever stops reading our progress does not stop the car,
-  signal(SIGXFSZ, SIG_IGN);  // nor does a file that may not grow: the write says so
+  signal(SIGPIPE, SIG_IGN);  // a reader of our output that goes away must not stop the car
+  signal(SIGXFSZ, SIG_IGN);  // a file that may not grow must not, either: the write reports it
   try {
     const int exit_code = merlin::cli::Main(argc, argv);
     if (std::fflush(stdout) != 0) throw merlin::MachineError("standard output cannot be written");

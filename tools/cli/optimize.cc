@@ -1,4 +1,4 @@
-// `merlin optimize`: solves a pose graph, and says what both objectives are there.
+// `merlin optimize`: solves a pose graph and prints the values of both objectives at the solution.
 #include "slam/graph/optimize.h"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "robot/base/read_file.h"
+#include "robot/base/files.h"
 #include "scenarios/judge/output_path.h"
 #include "scenarios/judge/writers.h"
 #include "slam/graph/g2o_file.h"
@@ -37,7 +37,7 @@ struct Solution {
   double time_s = 0.0, iteration_ms = 0.0;
 };
 
-// Each part of the graph by itself: what a step gains is small or not beside that part's own objective.
+// Solves each connected part of the graph by itself, so that each converges by its own objective.
 Solution Solve(const OptimizeArguments& arguments) {
   const double begin_s = Now_s();
   Solution solution{.file = ParseG2o(ReadFile(arguments.graph, "a pose graph (g2o)"), arguments.graph)};

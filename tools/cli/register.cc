@@ -1,4 +1,4 @@
-// `merlin register`: aligns two clouds from files, and says how well.
+// `merlin register`: aligns two point clouds from files, and tells how well they fit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -137,7 +137,8 @@ std::string Json(const AlignResult& r, const Clouds& clouds, double time_ms) {
 }
 
 std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
-  std::string text = "T_target_source\n";  // in so many digits that it moves a point 1e9 m away as the result does
+  // With enough digits to move a point that is 1e9 m away correctly.
+  std::string text = "T_target_source\n";
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) text += fmt::format(" {:20.15f}", r.T_target_source.matrix()(i, j));
     text += "\n";

@@ -10,13 +10,10 @@
 
 #include "robot/base/error.h"
 #include "scenarios/config/scenario.h"
-#include "tools/cli/commands.h"
-#if MERLIN_TWIN
 #include "scenarios/judge/output_folder.h"
-#include "scenarios/run/plugs.h"
-#include "tools/cli/run_options.h"
+#include "tools/cli/commands.h"
+#include "tools/cli/robots.h"
 #include "tools/cli/terminal.h"
-#endif
 
 namespace merlin::cli {
 namespace {
@@ -28,19 +25,6 @@ struct RunArguments {
   std::vector<std::string> sets;
   bool json = false;
 };
-
-#if MERLIN_TWIN
-
-}  // namespace
-
-Gl GlOf(const std::string& name) {
-  return name == "egl"      ? Gl::kEgl
-         : name == "osmesa" ? Gl::kOsmesa
-         : name == "off"    ? Gl::kOff
-                            : Gl::kAuto;
-}
-
-namespace {
 
 double PaceOf(const std::string& text) {
   if (text == "fast") return 0.0;
@@ -56,32 +40,15 @@ double PaceOf(const std::string& text) {
   return pace;
 }
 
-}  // namespace
-
-void SetRobot(const std::string& text, RunOptions& options) {
-  const std::string hardware = "hardware:";
-  if (text == "twin") return;
-  if (text == "emulated") {
-    options.robot = RobotKind::kEmulated;
-  } else if (text.starts_with(hardware) && text.size() > hardware.size()) {
-    options.robot = RobotKind::kHardware;
-    options.hardware_file = text.substr(hardware.size());
-  } else {
-    throw InputError("--robot", "unknown robot", "twin, emulated or hardware:FILE", "'" + text + "'");
-  }
-}
-
-namespace {
-
 // A few times a second on a terminal, every ten seconds of the run elsewhere.
 class Progress {
  public:
   explicit Progress(double duration_s) : duration_s_(duration_s) {}
-  void Show(Time now, double distance_m, const std::string& doing) {
-    const double now_s = Seconds(now);
+  void Show(const LoopState& state) {
+    const double now_s = Seconds(state.now);
     if (!line_.on_terminal() && now_s < next_s_) return;
     next_s_ = now_s + 10.0;
-    line_.Show(fmt::format("{:6.1f} s of {:.0f} s, {:6.2f} m: {}", now_s, duration_s_, distance_m, doing));
+    line_.Show(fmt::format("{:6.1f} s of {:.0f} s, {:6.2f} m: {}", now_s, duration_s_, state.path_m, Doing(state)));
   }
 
  private:
@@ -92,19 +59,24 @@ class Progress {
 std::string Number(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "unknown";
 }
+std::string Number(const std::optional<std::int64_t>& count) { return count ? std::to_string(*count) : "unknown"; }
 
 void PrintSummary(const RunReport& report, const std::filesystem::path& out) {
   const RunResult& result = report.result;
   const Metrics& m = result.metrics;
   fmt::print("{} seed {}: {}\n", result.scenario, result.seed, Name(result.verdict));
-  for (const Check& check : result.checks)
-    fmt::print("  {} {:<32} {} (limit {:g})\n", check.pass ? "pass" : "FAIL", check.name, Number(check.value, 3),
-               check.limit);
-  if (result.checks.empty()) fmt::print("  nothing was checked: the scenario has no checks\n");
+  for (const Check& check : result.checks) {
+    if (!check.judged)
+      fmt::print("  not judged: {} (limit {:g}), which this run cannot know\n", check.name, check.limit);
+    else
+      fmt::print("  {} {:<32} {} (limit {:g})\n", check.pass ? "pass" : "FAIL", check.name, Number(check.value, 3),
+                 check.limit);
+  }
+  if (result.checks.empty()) fmt::print("  nothing was judged: the scenario has no checks\n");
   if (!result.fault.empty()) fmt::print("  stopped: {}\n", result.fault);
   if (!report.note.empty()) fmt::print("  note: {}\n", report.note);
-  fmt::print("  drove {} m in {} s, {} laps, {} collisions\n", Number(m.distance_m, 2), Number(m.sim_time_s, 1),
-             m.laps.value_or(0), m.collisions.value_or(0));
+  fmt::print("  drove {} m in {} s, laps: {}, collisions: {}\n", Number(m.distance_m, 2), Number(m.sim_time_s, 1),
+             Number(m.laps), Number(m.collisions));
   if (m.map_size_m[0] && m.map_size_m[1])
     fmt::print("  map {} x {} m, off the plan by {} and {} %\n", Number(m.map_size_m[0], 2), Number(m.map_size_m[1], 2),
                Number(m.map_size_error_percent[0], 2), Number(m.map_size_error_percent[1], 2));
@@ -134,7 +106,7 @@ int Run(const RunArguments& arguments) {
   if (!arguments.seed.empty()) sets.push_back("seed=" + arguments.seed);
   if (!arguments.duration_s.empty()) sets.push_back("duration_s=" + arguments.duration_s);
   options.scenario = ReadScenario(arguments.scenario, sets);
-  SetRobot(arguments.robot, options);
+  const PlugMaker make_plug = PlugOf(arguments.robot, options);
   options.out = arguments.out.empty()
                     ? std::filesystem::path("runs") / fmt::format("{}-{}", options.name, options.scenario.seed)
                     : std::filesystem::path(arguments.out);
@@ -145,11 +117,8 @@ int Run(const RunArguments& arguments) {
   RunReport report;
   {
     Progress progress(options.scenario.duration_s);
-    if (!arguments.json)
-      options.progress = [&progress](Time now, double distance_m, const std::string& doing) {
-        progress.Show(now, distance_m, doing);
-      };
-    report = RunScenario(options, interrupted);
+    if (!arguments.json) options.progress = [&progress](const LoopState& state) { progress.Show(state); };
+    report = RunScenario(options, make_plug, interrupted);
   }
   if (arguments.json) {
     if (!report.note.empty()) fmt::print(stderr, "merlin: {}\n", report.note);
@@ -159,19 +128,8 @@ int Run(const RunArguments& arguments) {
   }
   std::fflush(stdout);  // what was told so far comes before the error
   if (report.error) std::rethrow_exception(report.error);
-  return report.result.verdict == Verdict::kPass          ? kPass
-         : report.result.verdict == Verdict::kInterrupted ? kInterrupted
-                                                          : kFail;
+  return ExitCodeOf(report.result.verdict);
 }
-
-#else
-
-int Run(const RunArguments& arguments) {
-  (void)ReadScenario(arguments.scenario, arguments.sets);
-  throw MachineError("this build has no twin (MERLIN_TWIN=OFF)");
-}
-
-#endif
 
 }  // namespace
 

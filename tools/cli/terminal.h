@@ -1,4 +1,5 @@
-// Text that fits the terminal, counted in columns: an umlaut takes one, a Chinese character two, an accent by itself none.
+// Fits text to the terminal. Widths are counted in columns: an umlaut takes one, a Chinese character two, a combining accent
+// none.
 #pragma once
 
 #include <string>
@@ -7,19 +8,19 @@
 
 namespace merlin::cli {
 
-// The terminal's width now: it may be resized at any time. COLUMNS where the terminal does not tell, else 80; 0 where fd
-// is no terminal.
+// The present width of the terminal, which may change at any time. If the terminal does not say: the environment variable
+// COLUMNS, or else 80. 0 if fd is not a terminal.
 int TerminalColumns(int fd);
 
 int DisplayColumns(std::string_view text);
 
-// As much of the text as fits into so many columns. In place of control characters and bytes that are no UTF-8 stands '?'.
+// As much of the text as fits into that many columns. Control characters and bytes that are not UTF-8 become '?'.
 std::string Cut(std::string_view text, int columns);
 
-// The text in lines of at most so many columns, broken at blanks; a longer word keeps a line of its own. 0: one line.
+// The text as lines of at most that many columns, broken at blanks; a longer word gets its own line. 0: one single line.
 std::vector<std::string> Wrap(std::string_view text, int columns);
 
-// What is going on: on a terminal one line that renews itself and never wraps, elsewhere plain lines. To stderr.
+// Shows progress on stderr: on a terminal as one line that is overwritten and never wraps, elsewhere as plain lines.
 class ProgressLine {
  public:
   ProgressLine();
@@ -29,7 +30,7 @@ class ProgressLine {
 
   bool on_terminal() const { return on_terminal_; }
   void Show(std::string_view text);
-  void Keep();  // what stands there stays: the next goes below it
+  void Keep();  // leaves the present line as it is and goes on below it
 
  private:
   bool on_terminal_;

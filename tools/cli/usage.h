@@ -1,4 +1,5 @@
-// What the command line says of itself: its help in lines that fit, and what was meant by a word that it does not know.
+// The text of the command line's help and of its errors. Help is wrapped to the terminal; an error about an unknown word
+// names the most similar known one.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,10 +8,10 @@
 
 namespace merlin::cli {
 
-// CLI11's own, with descriptions wrapped to the terminal, or to 80 columns where there is none.
+// CLI11's formatter, with descriptions wrapped to the width of the terminal; 80 columns if there is no terminal.
 std::shared_ptr<CLI::FormatterBase> HelpFormatter();
 
-// The error in one sentence; an unknown option or subcommand with the nearest that there is.
+// The error as one sentence. For an unknown option or subcommand it names the most similar one.
 std::string Explain(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace merlin::cli

@@ -1,5 +1,5 @@
-// Clouds from files: PLY (ascii, binary of either byte order), PCD (ascii, binary, binary_compressed) and columns of
-// text (.csv, .txt, .xyz, .asc, .pts).
+// Reads point clouds from files: PLY (ASCII, binary in either byte order), PCD (ASCII, binary, binary_compressed) and columns
+// of text (.csv, .txt, .xyz, .asc, .pts).
 #pragma once
 
 #include <array>
@@ -16,25 +16,27 @@ namespace merlin {
 struct CloudFile {
   Cloud cloud;                                     // sigma_m where the file has a column of that name
   std::vector<std::array<std::uint8_t, 3>> rgb{};  // red, green, blue [0, 255], where columns have them; else empty
-  std::size_t left_out = 0;             // points that are empty, not finite, beyond 1e9 m, or of a sigma_m not above 0
-  std::vector<std::string> warnings{};  // a sentence each: what else of the file was not read, or how it was
+  // Points that were not taken: empty, not finite, farther than 1e9 m, or with a sigma_m that is not positive.
+  std::size_t left_out = 0;
+  std::vector<std::string> warnings{};  // one sentence each: what else was not read, or read in an unusual manner
 };
 
-// By the name's ending. Throws InputError with every fault: where (line, or byte of binary data), what, expected, got.
-// Asks for memory only for points that the file has. A byte-order mark is ignored.
+// The ending of the name tells the format. Throws InputError that says where (line, or byte of binary data), what, expected
+// and got. Takes memory only for points that are really in the file, whatever its header claims. Ignores a byte-order mark.
 CloudFile ReadCloud(const std::filesystem::path& file);
 
-// The formats themselves; `name` is the file's, for what they throw.
-// PLY (G. Turk, 1994): x, y, z and colours of the element vertex; other properties, lists and elements are read over.
-// Bytes behind binary data are left, with a warning.
+// The three formats. `name` is the name of the file, for error messages.
+//
+// PLY (G. Turk, 1994): takes x, y, z and colours of the element `vertex` and skips other properties, lists and elements. Bytes
+// behind the data of a binary file give a warning.
 CloudFile ParsePly(std::string_view bytes, const std::string& name);
-// PCD 0.7 (pointclouds.org): the fields x, y, z; bytes behind binary data as above. The viewpoint does not move the
-// points.
+// PCD 0.7 (pointclouds.org): takes the fields x, y, z and the colour; bytes behind the data as above. The viewpoint does not
+// move the points.
 CloudFile ParsePcd(std::string_view bytes, const std::string& name);
-// Columns between commas, semicolons, tabs or blanks. A header of names (columns.h), perhaps behind # or //, or none:
-// then the first three are x, y, z. Columns that are not used may hold any text, or nothing. A line of one whole number
-// before the points is their count. Decimal commas are read where commas separate nothing, with a warning. Other lines
-// that begin with #, // or % are remarks.
+// Text: columns are separated by commas, semicolons, tabs or blanks. A header line may name them (columns.h), also behind #
+// or //; without a header the first three are x, y, z. Columns that are not used may contain any text, or none. A line with a
+// single whole number before the points is their count. Decimal commas are accepted, with a warning, if commas do not
+// separate the columns. Other lines that start with #, // or % are comments.
 CloudFile ParseCsv(std::string_view bytes, const std::string& name);
 
 }  // namespace merlin

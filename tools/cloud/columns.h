@@ -1,4 +1,4 @@
-// Which columns of a file's rows are what, and how rows become points.
+// Finds out what each column of a file means, and turns rows into points.
 #pragma once
 
 #include <array>
@@ -12,27 +12,27 @@
 
 namespace merlin {
 
-// Whether these names have columns x, y and z.
+// Whether x, y and z are among these names.
 bool HaveCoordinates(std::span<const std::string_view> names);
 
 class Columns {
  public:
-  // The file's columns by name, in any case, with or without their unit, in their order. Coordinates: x, y, z; Points:0
-  // ... (ParaView); Easting, Northing, Elevation. Colours: red, green, blue; r, g, b; diffuse_red ... Throws InputError
-  // at `where` without coordinates, or with one of the names we know given twice.
+  // names: of the columns, in order; upper or lower case, with or without a unit. Known are for coordinates x, y, z, or
+  // Points:0 ... (ParaView), or Easting, Northing, Elevation; for colours red, green, blue, or r, g, b, or diffuse_red ...
+  // Throws InputError that begins with `where` if coordinates are missing, or if a known name appears twice.
   Columns(std::span<const std::string_view> names, const std::string& where);
 
-  // Whether a point's value in that column counts; the others may hold anything.
+  // Whether the values of that column are needed. Other columns may contain anything.
   bool Used(std::size_t column) const;
-  // The first column of colours, where all three are there.
+  // The column of red, if all three colours are there.
   std::optional<std::size_t> colour() const { return red_ && green_ && blue_ ? red_ : std::nullopt; }
 
-  // One value a column.
+  // Adds a point. row: one value per column.
   void Add(std::span<const double> row, CloudFile& file);
 
-  // To be called last: gives the points their colours. Fractions up to 1 are shares of 255, numbers beyond 255 of
-  // 65535, others are [0, 255] as they are. whole: whether they are whole numbers by their type; unknown: by their
-  // values.
+  // Must be called last: gives the points their colours, scaled to [0, 255]. Values of which all are at most 1 count as
+  // fractions of 1; if any exceeds 255, as 16-bit numbers; else they are taken as they are. whole: whether the file's type is
+  // an integer; not given: the values decide.
   void GiveColours(CloudFile& file, std::optional<bool> whole);
 
  private:

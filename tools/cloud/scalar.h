@@ -1,4 +1,4 @@
-// Numbers of a file's own type and byte order, as doubles; and the place in binary data.
+// Reads numbers of any type and byte order from binary data as doubles, and keeps the position for error messages.
 #pragma once
 
 #include <bit>
@@ -20,14 +20,14 @@ constexpr std::size_t SizeOf(Scalar type) {
 
 constexpr bool IsWhole(Scalar type) { return type != Scalar::kFloat && type != Scalar::kDouble; }
 
-// For a warning.
+// A warning about bytes that follow the data.
 inline std::string BytesBehind(const std::string& name, std::size_t count) {
-  return name + ": " + std::to_string(count) + " bytes behind the data that its header tells of are not read";
+  return name + ": " + std::to_string(count) + " bytes behind the data that the header announces are not read";
 }
 
 class BinaryReader {
  public:
-  // offset: where in the file the data begin, for what is thrown.
+  // offset: position of the data in the file, for error messages.
   BinaryReader(std::string_view data, std::endian order, std::size_t offset, std::string name)
       : data_(data), order_(order), offset_(offset), name_(std::move(name)) {}
 
@@ -57,7 +57,7 @@ class BinaryReader {
     return 0.0;
   }
 
-  // count of `size` bytes each, both from the file.
+  // Skips count values of `size` bytes. Both numbers come from the file and may be too large.
   void Skip(std::size_t count, std::size_t size) {
     if (count > left() / size) throw InputError(Where(), "the file ends within the data");
     at_ += count * size;

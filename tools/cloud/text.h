@@ -1,4 +1,4 @@
-// Lines, words and numbers of the text in cloud files.
+// Splits the text of cloud files into lines, words and numbers.
 #pragma once
 
 #include <charconv>
@@ -12,11 +12,11 @@
 
 namespace merlin::cloud_text {
 
-// Lines one by one, without their ends (\n or \r\n), counted from 1.
+// Gives the lines one by one, without their line ends (\n or \r\n); counts from 1.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text) {}
-  // Of a file from its first byte on: a byte-order mark belongs to no line.
+  // For a whole file: skips a byte-order mark.
   static Lines OfFile(std::string_view bytes) {
     Lines lines(bytes);
     lines.at_ = bytes.size() - WithoutByteOrderMark(bytes).size();
@@ -31,8 +31,8 @@ class Lines {
     ++number_;
     return line;
   }
-  std::size_t number() const { return number_; }  // of the line last given
-  std::size_t at() const { return at_; }          // byte where the next begins
+  std::size_t number() const { return number_; }  // of the line given last
+  std::size_t at() const { return at_; }          // byte at which the next line begins
   std::string_view Rest() const { return text_.substr(at_); }
 
  private:
@@ -48,7 +48,7 @@ inline std::string_view Trim(std::string_view text) {
   return end == std::string_view::npos ? std::string_view{} : text.substr(begin, end + 1 - begin);
 }
 
-// Into `words`, whose memory serves again for the next line.
+// Writes into `words`, so that its memory can be used again for the next line.
 inline void SplitWords(std::string_view line, std::vector<std::string_view>& words) {
   words.clear();
   for (std::size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
@@ -58,7 +58,7 @@ inline void SplitWords(std::string_view line, std::vector<std::string_view>& wor
   }
 }
 
-// A separator within a field's "quotes" separates nothing.
+// A separator inside a field in "quotes" does not count.
 inline void SplitAt(char separator, std::string_view line, std::vector<std::string_view>& fields) {
   fields.clear();
   for (std::size_t begin = 0; begin <= line.size();) {
@@ -77,7 +77,7 @@ inline std::string_view WithoutQuotes(std::string_view field) {
                                                                           : field;
 }
 
-// The whole text as a number; nan and inf are numbers.
+// The number that the whole text is; none if it is not one. nan and inf count as numbers.
 template <class Number>
 std::optional<Number> ToNumber(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);

@@ -1,5 +1,6 @@
-// Clouds as files: PLY and PCD (binary), CSV. Coordinates are 32-bit floats where that keeps each point within 0.05 mm,
-// which holds some 1000 m around the origin; else doubles (national grids). CSV has digits enough for doubles.
+// Writes point clouds as binary PLY, binary PCD or CSV. Coordinates are 32-bit floats if that moves no point by more than
+// 0.05 mm, which is so up to about 1000 m from the origin, and doubles otherwise (for example in national grids). CSV has as
+// many digits as a double needs.
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@ namespace merlin {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-// The file's bytes: PCD or CSV where the name ends so, else PLY. rgb: a colour a point, or none (then they are light
-// grey, as in a run's map).
+// The bytes of the file. The ending of the name selects PCD or CSV; anything else gives PLY. rgb: one colour per point, or
+// empty: all points are light grey, as in the map of a run.
 std::string ToCloud(const std::filesystem::path& name, std::span<const Eigen::Vector3d> positions,
                     std::span<const Rgb> rgb);
 

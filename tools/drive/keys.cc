@@ -8,7 +8,7 @@ namespace {
 
 constexpr char kEscape = '\x1b';
 
-// The letter that an arrow key stands for.
+// The letter that has the same meaning as an arrow key.
 char Letter(char arrow) {
   switch (arrow) {
     case 'A':
@@ -64,8 +64,8 @@ void Keys::Press(char key, bool shift, Time now) {
   if (key == 'a' || key == 'd') left_ = std::clamp(left_ + (key == 'a' ? 1 : -1), -kSteps, kSteps);
 }
 
-ManualWish Keys::Wish(Time now) const {
-  ManualWish wish{.heard = now, .autonomy = autonomy_, .quit = quit_};
+ManualCommand Keys::Wish(Time now) const {
+  ManualCommand wish{.heard = now, .autonomy = autonomy_, .quit = quit_};
   wish.held = pressed_ && now - *pressed_ < kLetGo;
   if (!wish.held) return wish;
   wish.speed_m_s = ahead_ * limits_.speed_m_s;

@@ -1,10 +1,10 @@
-// Keys of a terminal as what the operator wants. A terminal tells of no key that is let go and repeats only the last
-// one held: so any driving key keeps the car going, and none for a while lets go.
+// Turns the keys of a terminal into manual commands. A terminal does not report that a key is released, and repeats only the
+// key that was pressed last. So any driving key keeps the car going, and the car stops when no key has come for a while.
 //
 //   w, arrow up      ahead, straight on         a, arrow left    a step of steering to the left
 //   s, arrow down    back, straight on          d, arrow right   a step to the right
 //   space            stops, autonomy too        p                autonomy on, off
-//   q                ends the drive             W A S D, or Shift with an arrow: drives on, whatever is in the way
+//   q                ends the drive             W A S D, or Shift with an arrow: overrides the obstacle stop
 #pragma once
 
 #include <optional>
@@ -23,10 +23,10 @@ class Keys {
 
   explicit Keys(const HandLimits& limits) : limits_(limits) {}
 
-  // What was typed, in pieces of any size. Unknown keys do nothing.
+  // The typed bytes, in pieces of any size. Unknown keys do nothing.
   void Feed(std::string_view typed, Time now);
-  // As of now; heard is now: a terminal that nobody touches is there.
-  ManualWish Wish(Time now) const;
+  // The command now. It counts as heard now: a terminal is there even if nobody touches it.
+  ManualCommand Wish(Time now) const;
 
  private:
   void Press(char key, bool shift, Time now);

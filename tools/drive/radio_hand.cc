@@ -9,7 +9,7 @@ constexpr Duration kValid = std::chrono::seconds(1);  // a byte says nothing of 
 
 }  // namespace
 
-ManualWish RadioHand::Send(const ManualWish& at_station, Time now) {
+ManualCommand RadioHand::Send(const ManualCommand& at_station, Time now) {
   const OneByteLimits limits{limits_.speed_m_s, limits_.steering_rad};
   if (at_station.heard == now) {
     const DriveCommand command{at_station.speed_m_s, at_station.steering_rad, kValid};

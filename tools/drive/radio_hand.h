@@ -18,14 +18,14 @@ class RadioHand {
 
   // at_station: the hand as it is now; a station whose stick has gone sends nothing. What the car last heard comes
   // back, with the time it heard it. Who wants to quit does not need the radio for it.
-  ManualWish Send(const ManualWish& at_station, Time now);
+  ManualCommand Send(const ManualCommand& at_station, Time now);
 
  private:
   Radio radio_;
   HandLimits limits_;
   operator_link::Decoder decoder_;
   std::uint8_t sequence_ = 0;
-  ManualWish heard_{.heard = Time(-std::chrono::hours(1))};  // nothing yet
+  ManualCommand heard_{.heard = Time(-std::chrono::hours(1))};  // nothing yet
 };
 
 }  // namespace merlin

@@ -11,13 +11,13 @@
 namespace merlin {
 namespace {
 
-// For the handlers, which know no object: the terminal that is raw, and how it was.
+// Global because signal handlers need them: the terminal in raw mode, and its former mode.
 std::atomic<int> raw_fd{-1};
 termios saved{};
 
 void OnDeath(int signal) {
   RestoreTerminal();
-  raise(signal);  // its usual end: the handler was for once
+  raise(signal);  // now with its default effect: the handler was installed for one signal
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// A terminal that hands out every key at once and shows none. It is put back as it was when this ends, however the
-// program ends: exceptions, signals that kill it, and main's own way out (RestoreTerminal). Only one at a time. Ctrl-C
-// stays a signal; Ctrl-Z does nothing meanwhile: a car under way is not to be suspended.
+// Switches a terminal to raw mode: every key is available at once, and none is shown. The former mode comes back in the end,
+// however the program ends: by an exception, by a signal that kills it, or through main's own exit (RestoreTerminal). Only one
+// object at a time. Ctrl-C stays a signal. Ctrl-Z does nothing, because a program that drives a car must not be suspended.
 #pragma once
 
 #include <signal.h>
@@ -12,7 +12,7 @@ namespace merlin {
 
 class RawTerminal {
  public:
-  // Throws InputError: no terminal, or this program is in the background.
+  // Throws InputError if fd is not a terminal, or if this program runs in the background.
   explicit RawTerminal(int fd);
   ~RawTerminal();
   RawTerminal(const RawTerminal&) = delete;
@@ -32,7 +32,7 @@ class RawTerminal {
   struct sigaction suspend_before_ {};
 };
 
-// Puts the terminal back, if it is raw; may be called in a signal handler.
+// Restores the terminal if it is in raw mode. May be called in a signal handler.
 void RestoreTerminal();
 
 }  // namespace merlin

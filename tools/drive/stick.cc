@@ -6,7 +6,7 @@
 namespace merlin {
 namespace {
 
-// 0 within the dead zone, from there on straight to 1 at full travel.
+// 0 within the dead zone, and from its edge linearly to 1 at full travel.
 double Travel(double axis) {
   const double beyond = (std::abs(axis) - Stick::kDeadZone) / (1.0 - Stick::kDeadZone);
   return beyond > 0.0 ? std::copysign(std::min(beyond, 1.0), axis) : 0.0;
@@ -14,13 +14,13 @@ double Travel(double axis) {
 
 }  // namespace
 
-ManualWish Stick::Update(const joystick::State& state, bool there, Time now) {
+ManualCommand Stick::Update(const joystick::State& state, bool there, Time now) {
   if (!there) {
     wish_.held = wish_.override_stop = false;
     wish_.speed_m_s = wish_.steering_rad = 0.0;
     return wish_;
   }
-  // The kernel counts to the right and to the back.
+  // The kernel's axes are positive to the right and backwards.
   const double left = -Travel(state.axes[kSteeringAxis]), ahead = -Travel(state.axes[kSpeedAxis]);
   wish_.heard = now;
   wish_.held = left != 0.0 || ahead != 0.0;

@@ -1,5 +1,5 @@
-// A joystick's axes and buttons as what the operator wants: stick to the left steers left, ahead drives ahead, in the
-// middle nobody holds it.
+// Turns the axes and buttons of a joystick into manual commands. Stick to the left: steers left; forwards: drives forwards; in
+// the middle: nobody steers.
 #pragma once
 
 #include "autonomy/arbitrate.h"
@@ -16,13 +16,14 @@ class Stick {
 
   explicit Stick(const HandLimits& limits) : limits_(limits) {}
 
-  // there: the joystick is; without it the hand is off and the wish ages. The autonomy button switches on and off.
-  ManualWish Update(const joystick::State& state, bool there, Time now);
+  // there: whether the joystick is connected. If not, nobody steers, and the command keeps the time at which the joystick was
+  // last heard. Each press of the autonomy button switches autonomy on or off.
+  ManualCommand Update(const joystick::State& state, bool there, Time now);
 
  private:
   HandLimits limits_;
-  ManualWish wish_;
-  bool autonomy_was_down_ = true;  // one that is down from the start is no press
+  ManualCommand wish_;
+  bool autonomy_was_down_ = true;  // a button that is down from the start does not count as pressed
 };
 
 }  // namespace merlin

@@ -1,4 +1,4 @@
-// How fast the physics alone is: one car in a furnished room.
+// Measures how fast the physics alone is: one car in a furnished room, no sensors.
 #pragma once
 
 #include <atomic>
@@ -8,12 +8,12 @@ namespace merlin {
 
 struct PhysicsBench {
   int runs = 7, steps = 10000;   // of each run
-  double steps_per_s = 0.0;      // the runs' median
-  double times_real_time = 0.0;  // the same times the step
+  double steps_per_s = 0.0;      // median of the runs
+  double times_real_time = 0.0;  // simulated time over wall time
   double least_times_real_time = 80.0;
 };
 
-// Ends early, and unfinished, when interrupted becomes true.
+// Returns early, with what it has, when interrupted becomes true.
 PhysicsBench BenchPhysics(const std::atomic<bool>& interrupted);
 
 std::string Table(const PhysicsBench& bench);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kBlocks = 3, kRoundsABlock = 5;  // in turns, so that what slows the machine meanwhile slows both
+constexpr int kBlocks = 3, kRoundsABlock = 5;  // in turns, so that a busy machine slows down both alike
 constexpr double kVoxels_m[] = {0.1, 0.25};
 
 fs::path FromSources(const char* variable, const fs::path& otherwise) {
@@ -28,7 +28,7 @@ fs::path FromSources(const char* variable, const fs::path& otherwise) {
   return value && *value ? fs::path(value) : fs::path(MERLIN_SOURCE_DIR) / otherwise;
 }
 
-// A folder that goes when this does.
+// A temporary folder that is deleted in the end.
 class Folder {
  public:
   Folder() {

@@ -1,5 +1,5 @@
-// How long registration takes beside small_gicp, the fastest that we know: the same clouds, voxels and guesses, one
-// thread each, in one run.
+// Compares the speed of our registration with that of small_gicp, the fastest library that we know. Both get the same clouds,
+// voxels and initial guesses, and one thread, in the same run.
 #pragma once
 
 #include <atomic>
@@ -9,8 +9,8 @@
 namespace merlin {
 
 struct RegisterBench {
-  // Median over the rounds of the processor time from the points to the pose: downsampling, normals or covariances, k-d
-  // tree and alignment. The error is that of the pose.
+  // median_ms: processor time from the points to the pose (downsampling, normals or covariances, k-d tree, alignment),
+  // median over the rounds. error_*: of the pose.
   struct Figures {
     double median_ms = 0.0;
     double error_mm = 0.0, error_deg = 0.0;
@@ -23,10 +23,10 @@ struct RegisterBench {
   };
   int rounds = 0;
   std::vector<Row> rows{};
-  std::string skipped{};  // what was not there, or empty
+  std::string skipped{};  // which data were missing; empty: none
 };
 
-// Throws MachineError where small_gicp is absent. Ends early, and unfinished, when interrupted becomes true.
+// Throws MachineError if small_gicp is not installed. Returns early, with what it has, when interrupted becomes true.
 RegisterBench BenchRegister(const std::atomic<bool>& interrupted);
 
 std::string Table(const RegisterBench& bench);

@@ -15,7 +15,7 @@ constexpr int kBeams = 64, kTurns = 1500;  // directions of a scan: about a fift
 constexpr std::size_t kPoints = 70'000;
 constexpr double kRangeNoise_m = 0.02, kRangeMin_m = 1.0;
 
-// Numbers that the standard defines bit by bit, unlike its distributions.
+// Random numbers that are the same bits everywhere; the distributions of the standard library are not.
 class Random {
  public:
   explicit Random(std::uint32_t seed) : bits_(seed) {}

@@ -1,4 +1,4 @@
-// Pairs of clouds that `merlin bench register` aligns: a simulated one whose pose is known, and real ones.
+// The pairs of clouds that `merlin bench register` aligns: a simulated pair with a known pose, and real ones.
 #pragma once
 
 #include <filesystem>
@@ -13,18 +13,18 @@ namespace merlin {
 struct RegisterPair {
   std::string name;
   Cloud source, target;
-  Pose T_target_source = Pose::Identity();  // true; of the real ones, another system's estimate
+  Pose T_target_source = Pose::Identity();  // the truth; for real pairs the estimate of another system
   Pose guess = Pose::Identity();
 };
 
-// 70,000 points each: a place of 70 x 60 m (ground, walls around it, houses, poles, trees) as a spinning lidar of 64
-// beams with 2 cm of range noise sees it, each in its own frame, from two places 1.4 m and 6 degrees apart. The same
-// bits every time.
+// Two clouds of 70,000 points: a place of 70 x 60 m (ground, walls around it, houses, poles, trees) as a spinning lidar with
+// 64 beams and 2 cm of range noise sees it from two poses that are 1.4 m and 6 degrees apart. Each cloud is in the frame of
+// its own pose. Always the same bits.
 RegisterPair SimulatedPair();
 
-// Neighbours of the five frames in that folder (depth/1.pgm ... 5.pgm and pose.txt), every pixel between 0.3 and 6 m,
-// guessed 15 cm and 5 degrees off; without the pair 1-2, which overlaps too little to judge. None where the folder is
-// absent.
+// Each two successive frames of the five in that folder (depth/1.pgm ... 5.pgm and pose.txt), with every pixel between 0.3
+// and 6 m, and an initial guess that is wrong by 15 cm and 5 degrees. Frames 1 and 2 overlap too little and are left out.
+// Empty if the folder does not exist.
 std::vector<RegisterPair> RgbdPairs(const std::filesystem::path& folder);
 
 }  // namespace merlin

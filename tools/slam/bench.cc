@@ -95,7 +95,7 @@ std::vector<Point> View(const Pose& T_map_base, std::uint32_t seed) {
   return points_base;
 }
 
-// A little beside the truth, held as odometry and compass hold it.
+// A guess that is a little wrong, with the uncertainty that odometry and compass have.
 PosePrior Guess(const Pose& T_map_base, int round) {
   PosePrior prior;
   prior.T_map_base =
@@ -127,7 +127,7 @@ void BenchRegistration(SlamBench& bench, const std::atomic<bool>& interrupted) {
   bench.rows.push_back(RowOf(fmt::format("registration, thinned to {:g} m", config.source_voxel_m), thinned, {}));
 }
 
-// What the devices of a twin deliver on a straight drive, in the order in which they do.
+// Everything that the devices of a twin deliver on a straight drive, in order of arrival.
 using Measurement = std::variant<DriveState, CompassReading, DepthFrame>;
 
 std::vector<Measurement> RecordDrive(Twin& twin, const std::atomic<bool>& interrupted) {
@@ -175,7 +175,7 @@ void BenchFrames(SlamBench& bench, const std::atomic<bool>& interrupted) {
   bench.rows.push_back(RowOf("frame, filter to pose", times, {.median_ms = 2.0, .p99_ms = 5.0}));
 }
 
-// The lap as it is run, but for the colours: its last metres were mapped before.
+// A whole lap without colour. Its last metres are mapped already, so that loops are closed.
 void BenchLap(SlamBench& bench, const std::atomic<bool>& interrupted) {
   RunOptions options{.name = kLap, .scenario = ReadScenario(kLap, {}), .out = {}, .progress = {}};
   const Scenario& scenario = options.scenario;
@@ -184,12 +184,14 @@ void BenchLap(SlamBench& bench, const std::atomic<bool>& interrupted) {
   DriveLoop loop(twin.robot(), BelievedCar(scenario.car), scenario.perception, scenario.slam, scenario.task,
                  scenario.pilot);
   Times frames, closing;
-  const auto tick = [&](Time, const Decision&) {
+  const auto watch = [&](const LoopState& state) {
+    if (state.decided != state.now) return true;
     frames.Add(loop.stack_ms().back());
-    if (loop.slam().loops() > bench.loops) closing.Add(loop.stack_ms().back());
-    bench.loops = loop.slam().loops();
+    if (state.loops > bench.loops) closing.Add(loop.stack_ms().back());
+    bench.loops = state.loops;
+    return true;
   };
-  loop.Run(interrupted, {.depth = {}, .color = {}, .tick = tick});
+  loop.Run(interrupted, watch);
   bench.rows.push_back(RowOf("lap, every frame", frames, {.median_ms = 2.0, .p99_ms = 5.0, .max_ms = 50.0}));
   bench.rows.push_back(RowOf("lap, frames that close a loop", closing, {.max_ms = 50.0}));
 }

@@ -1,5 +1,5 @@
-// How fast the stack finds the pose: registration alone, a whole frame from filter to pose, and the frames of a lap that
-// closes a loop.
+// Measures how fast the stack finds the pose: the registration alone, a whole frame from filter to pose, and the frames of a
+// lap, in which loops are closed.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ struct SlamBench {
   std::vector<Row> rows{};
 };
 
-// Ends early, and unfinished, when interrupted becomes true.
+// Returns early, with what it has, when interrupted becomes true.
 SlamBench BenchSlam(const std::atomic<bool>& interrupted);
 
 std::string Table(const SlamBench& bench);

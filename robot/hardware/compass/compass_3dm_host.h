@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "robot/hal/measurement_queue.h"
 #include "robot/hardware/device_health.h"
-#include "robot/hardware/measurement_queue.h"
 #include "robot/hardware/serial/serial_thread.h"
 #include "robot/protocol/compass_3dm.h"
 #include "robot/types/measurements.h"

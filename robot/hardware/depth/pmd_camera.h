@@ -1,6 +1,6 @@
 // A ToF camera through its maker's library (robot/protocol/pmd_api.h), the same for both generations of its calls.
-// Every call may block and throws MachineError with the library's own words where it fails, also where the library
-// throws an exception of its own.
+// Every call may block. A call that fails, or in which the library throws, throws MachineError with the library's own
+// message.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ void Visit(Visitor& v, PmdCameraConfig& c) {
   v("processing_argument", c.processing_argument);
 }
 
-// A frame as the library gives it. Empty where it does not tell: generation 1 has no flags.
+// A frame as the library delivers it. Images that it does not have are empty: generation 1 has no flags.
 struct PmdFrame {
   DepthSettings settings;  // as used
   std::vector<float> range_m, amplitude, intensity;

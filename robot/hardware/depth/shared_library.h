@@ -14,7 +14,7 @@ class SharedLibrary {
   SharedLibrary(const SharedLibrary&) = delete;
   SharedLibrary& operator=(const SharedLibrary&) = delete;
 
-  // A call it lacks is noted, and null; RequireAll then names them all.
+  // Null for a call that the library lacks. RequireAll then names all of them.
   template <class Function>
   void Find(const char* name, Function*& call) {
     call = reinterpret_cast<Function*>(Symbol(name));

@@ -1,6 +1,6 @@
-// MERLIN's motor, steering and (if it has one) pan unit, behind its microcontroller on a serial port. Its thread is its
-// own: no call waits for the port. Braking never depends on this program: the microcontroller brakes when a command
-// expires and when none comes.
+// The driver of MERLIN's motor, steering and (where there is one) pan unit: its microcontroller on a serial port. The
+// driver has its own thread; no call waits for the port. Braking never depends on this program: the microcontroller
+// brakes when a command expires and when none comes.
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@ class MicrocontrollerDrive : public Drive {
   // Absent as long as the microcontroller reports none.
   PanUnit& pan();
 
-  std::string firmware() const;   // empty until it has said
+  std::string firmware() const;   // empty until the microcontroller has reported it
   std::string Complaint() const;  // what is wrong, one sentence; empty if nothing is
 
  private:

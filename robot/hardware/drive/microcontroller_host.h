@@ -1,12 +1,12 @@
-// The PC's end of the microcontroller's line, without port and thread: keeps the command in force going, turns states
-// into measurements. Protocol: robot/protocol/microcontroller.h.
+// The PC's end of the microcontroller's line, without port or thread. It repeats the command in force, and turns the
+// microcontroller's states into measurements. Protocol: robot/protocol/microcontroller.h.
 #pragma once
 
 #include <string>
 
+#include "robot/hal/measurement_queue.h"
 #include "robot/hal/pan_unit.h"
 #include "robot/hardware/device_health.h"
-#include "robot/hardware/measurement_queue.h"
 #include "robot/hardware/serial/serial_thread.h"
 #include "robot/protocol/least_delay.h"
 #include "robot/protocol/microcontroller.h"
@@ -41,7 +41,7 @@ class MicrocontrollerHost : public HostEnd {
   MeasurementQueue<PanState> pan_states;
   const DeviceStatus& status() const { return health_.status(); }
   bool has_pan() const { return has_pan_; }
-  const std::string& firmware() const { return firmware_; }  // empty until it has said
+  const std::string& firmware() const { return firmware_; }  // empty until the microcontroller has reported it
   // What is wrong, for people; empty if nothing is.
   std::string Complaint() const;
 

@@ -1,5 +1,5 @@
-// A joystick of the Linux kernel (/dev/input/js0), read without waiting. A named pipe that carries the same events does
-// as well: a stick on another machine (`ssh there cat /dev/input/js0 > pipe`), or one recorded.
+// A joystick of the Linux kernel (/dev/input/js0), read without waiting. A named pipe with the same events works as
+// well: from a joystick on another machine (`ssh there cat /dev/input/js0 > pipe`), or from a recording.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ class JoystickDevice {
   JoystickDevice& operator=(const JoystickDevice&) = delete;
 
   // Takes what has come. False: it has gone (pulled out; nobody writes to the pipe) and its state is old; it is opened
-  // again when it is back. A stick that is held still says nothing and is there.
+  // again when it is back. A stick that is held still sends nothing, and still counts as there.
   bool Read();
   const joystick::State& state() const { return decoder_.state(); }
 

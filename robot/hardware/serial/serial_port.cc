@@ -92,6 +92,7 @@ void SerialPort::Close() {
   ioctl(fd_, TIOCNXCL);
   close(fd_);
   fd_ = -1;
+  tail_.clear();
 }
 
 Bytes SerialPort::Read() {
@@ -103,18 +104,33 @@ Bytes SerialPort::Read() {
   return {};
 }
 
-void SerialPort::Write(BytesView bytes) {
-  if (fd_ < 0 || bytes.empty()) return;
-  if (write(fd_, bytes.data(), bytes.size()) < 0 && errno != EAGAIN && errno != EINTR) Close();
+BytesView SerialPort::Send(BytesView bytes) {
+  if (fd_ < 0 || bytes.empty()) return {};
+  const ssize_t size = write(fd_, bytes.data(), bytes.size());
+  if (size >= 0) return bytes.subspan(static_cast<std::size_t>(size));
+  if (errno == EAGAIN || errno == EINTR) return bytes;
+  Close();
+  return {};
 }
 
-void SerialPort::Wait(Duration timeout) {
+void SerialPort::Write(BytesView message) {
+  if (!tail_.empty()) {
+    const BytesView left = Send(tail_);
+    tail_ = Bytes(left.begin(), left.end());
+    if (!tail_.empty()) return;
+  }
+  const BytesView left = Send(message);
+  if (left.size() < message.size()) tail_.assign(left.begin(), left.end());
+}
+
+bool SerialPort::Wait(Duration timeout) {
   // poll passes over a negative descriptor: without a port it waits for Wake alone.
   std::array<pollfd, 2> fds{{{wake_fd_, POLLIN, 0}, {fd_, POLLIN, 0}}};
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(std::max(timeout, Duration(0)));
-  if (poll(fds.data(), fds.size(), static_cast<int>(ms.count())) <= 0) return;
+  if (poll(fds.data(), fds.size(), static_cast<int>(ms.count())) <= 0) return false;
   std::uint64_t count = 0;
-  if (fds[0].revents != 0 && read(wake_fd_, &count, sizeof count) < 0) return;  // lets the next Wait wait again
+  if (fds[0].revents != 0 && read(wake_fd_, &count, sizeof count) < 0) return true;  // lets the next Wait wait again
+  return true;
 }
 
 void SerialPort::Wake() {

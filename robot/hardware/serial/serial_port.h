@@ -1,4 +1,4 @@
-// A serial port of this machine: raw bytes, 8N1, no flow control; nothing here ever blocks but Wait.
+// A serial port of this machine: raw bytes, 8N1, no flow control. No call blocks, except Wait.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace merlin {
 
 struct SerialConfig {
-  std::string port;  // as /dev/ttyUSB0; better a name that stays: /dev/serial/by-id/...
+  std::string port;  // such as /dev/ttyUSB0; better a name that does not change: /dev/serial/by-id/...
   int baud = 9600;   // 9600, 19200, 57600 or 115200, as the device is set
 };
 
@@ -33,20 +33,24 @@ class SerialPort {
   void Open();
   bool is_open() const { return fd_ >= 0; }
 
-  // All that has come, up to some. A port that has gone (unplugged) closes itself: see is_open().
+  // What has arrived, up to 4096 bytes a call. A port that is unplugged closes itself: see is_open().
   Bytes Read();
-  // What the line cannot take now is dropped: late bytes would be worse than none.
-  void Write(BytesView bytes);
-  // Until something can be read, another thread calls Wake, or the time is over.
-  void Wait(Duration timeout);
+  // A message that the line begins to take goes out whole: the tail of a short write is kept and comes before whatever
+  // is written next (nothing, too: Write({})). While a tail waits, new messages are dropped: they would come too late.
+  void Write(BytesView message);
+  // Until something can be read or another thread calls Wake; false: the time was over before.
+  bool Wait(Duration timeout);
   void Wake();
 
  private:
   void Close();
   void SetUp();
+  // Returns what the line did not take.
+  BytesView Send(BytesView bytes);
   [[noreturn]] void Fail(const std::string& what) const;
 
   SerialConfig config_;
+  Bytes tail_;  // of a message that the line has taken in part
   int fd_ = -1;
   int wake_fd_ = -1;
 };

@@ -1,5 +1,5 @@
-// The thread of a driver behind a serial port: carries bytes between the port and the host's end of the line, and opens
-// the port again when it has gone.
+// The thread of a driver behind a serial port. It carries bytes between the port and the host's end of the protocol,
+// and reopens the port when it is lost.
 #pragma once
 
 #include <atomic>

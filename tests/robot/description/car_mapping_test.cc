@@ -96,9 +96,13 @@ TEST(CarMapping, ReadsABuggyWhoseRootLooksAlongY) {
 }
 
 TEST(CarMapping, NamesAnUnknownKeyAndItsNearest) {
-  ExpectMapping("compass_frame:", "compas_frame:", {"car.mapping.yaml:10", "'compas_frame'", "'compass_frame'"});
-  ExpectMapping("  gear:", "  gears:", {"car.mapping.yaml:", "drivetrain needs 'gear'"});
-  ExpectMapping("  gear: 12", "  gear: 12\n  volts: 3", {"car.mapping.yaml:13", "unknown key 'volts'"});
+  ExpectMapping(
+      "compass_frame:", "compas_frame:", {"car.mapping.yaml:10: compas_frame: unknown key", "'compass_frame'"});
+  const std::string both = RoverError(RoverUrdf(), Replaced(kRoverMapping, "  gear:", "  gears:"));
+  EXPECT_NE(both.find("car.mapping.yaml:12: drivetrain: missing key 'gear'"), std::string::npos) << both;
+  EXPECT_NE(both.find("car.mapping.yaml:12: drivetrain.gears: unknown key; did you mean 'gear'?"), std::string::npos)
+      << both;
+  ExpectMapping("  gear: 12", "  gear: 12\n  volts: 3", {"car.mapping.yaml:13: drivetrain.volts: unknown key"});
 }
 
 TEST(CarMapping, NamesAJointThatIsNotThereAndItsNearest) {
@@ -111,16 +115,18 @@ TEST(CarMapping, RefusesOneJointInTwoRoles) {
   ExpectMapping(": axle_fr", ": axle_fl",
                 {"car.mapping.yaml:3", "'wheel_front_right_joint'", "'axle_fl' already has another role"});
   ExpectMapping("steer_front_left_joint", "steer_front_right_joint", {"car.mapping.yaml:7", "given twice"});
-  ExpectMapping("compass_frame", "depth_camera_optical_frame", {"car.mapping.yaml:8", "'depth_camera_frame' beside"});
+  ExpectMapping("compass_frame", "depth_camera_optical_frame",
+                {"car.mapping.yaml:8", "depth_camera_frame: stands beside"});
 }
 
 TEST(CarMapping, RefusesWhatIsNoMapping) {
-  EXPECT_NE(RoverError(RoverUrdf(), "").find("a map of keys"), std::string::npos);
-  EXPECT_NE(RoverError(RoverUrdf(), "- a\n- b\n").find("a map of keys"), std::string::npos);
+  EXPECT_NE(RoverError(RoverUrdf(), "").find("no map of keys; expected a car's mapping"), std::string::npos);
+  EXPECT_NE(RoverError(RoverUrdf(), "- a\n- b\n").find("no map of keys; expected a car's mapping"), std::string::npos);
   EXPECT_NE(RoverError(RoverUrdf(), "a: [1\nb: }").find("broken YAML"), std::string::npos);
-  ExpectMapping(": axle_fl", ": [axle_fl]", {"car.mapping.yaml:2", "a name in the URDF"});
+  ExpectMapping(": axle_fl", ": [axle_fl]", {"car.mapping.yaml:2: wheel_front_left_joint: expected a text"});
+  ExpectMapping(": axle_fl", ": ''", {"car.mapping.yaml:2: wheel_front_left_joint: expected a name in the URDF"});
   for (const std::string number : {"0", "-1", ".nan", ".inf", "twelve", "[1]"})
-    ExpectMapping("gear: 12", "gear: " + number, {"car.mapping.yaml:12", "'gear'", "a positive number"});
+    ExpectMapping("gear: 12", "gear: " + number, {"car.mapping.yaml:12: drivetrain.gear: expected a positive number"});
   ExpectMapping("turn: 256", "turn: 2.5", {"a whole number"});
 }
 

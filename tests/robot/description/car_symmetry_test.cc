@@ -104,8 +104,9 @@ TEST(CarMapping, NamesEveryFaultWithItsLine) {
   mapping = Replaced(mapping, ": axle_fr", ": [axle_fr]");
   mapping = Replaced(mapping, "gear: 12", "gear: 0");
   const std::string text = Rover(RoverUrdf(), mapping).Error();
-  ExpectSays(text, {"car.mapping.yaml:3: 'wheel_front_right_joint'", "car.mapping.yaml:10: unknown key 'compas_frame'",
-                    "car.mapping.yaml:12: 'gear'"});
+  ExpectSays(text, {"car.mapping.yaml:3: wheel_front_right_joint: expected a text",
+                    "car.mapping.yaml:10: compas_frame: unknown key",
+                    "car.mapping.yaml:12: drivetrain.gear: expected a positive number"});
 }
 
 }  // namespace

@@ -151,6 +151,8 @@ TEST_F(Description, DepthCameraLooksAheadLevel) {
 }
 
 // Table 4.5 of the thesis, read as q_CCD = R q_PMD + t.
+// The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
+// University of Siegen, about 2011.
 TEST_F(Description, ColourCameraStandsWhereTable45Says) {
   const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
   const Pose T_ccd_pmd = car.T_base_color->inverse() * car.T_base_depth;
@@ -562,16 +564,18 @@ TEST_F(Description, BothReadersRefuseBadErrorsWithAllFaultsAtOnce) {
   text = Replaced(text, "full_well_e: 1.5e+6", "full_well_e: -1    ");
   const std::string sheet = DepthError(text);
   EXPECT_EQ(sheet, ErrorOf([&] { ReadDepthCameraErrors(File("camera.yaml", text)); }));
-  for (const std::string key : {"harmonic_3", "dead_share", "hot_share", "warmup_m", "full_well_e"})
-    ExpectSays(sheet, {"camera.yaml:" + std::to_string(LineOf(text, key + ":")) + ": '" + key + "'"});
+  for (const std::string key : {"harmonic_3", "dead_share", "hot_share", "warmup_m"})
+    ExpectSays(sheet, {"camera.yaml:" + std::to_string(LineOf(text, key + ":")) + ": errors." + key + ": expected"});
+  ExpectSays(sheet, {"camera.yaml:" + std::to_string(LineOf(text, "full_well_e:")) + ": full_well_e: expected"});
   ExpectSays(sheet, {"camera.yaml:" + std::to_string(LineOf(text, "lamp_baselin_m")) +
-                     ": unknown key 'lamp_baselin_m'; did you mean 'lamp_baseline_m'?"});
+                     ": errors.lamp_baselin_m: unknown key; did you mean 'lamp_baseline_m'?"});
   EXPECT_EQ(std::count(sheet.begin(), sheet.end(), '\n'), 5);
 }
 
 TEST_F(Description, ErrorsMustBeAMap) {
   for (const std::string errors : {"errors: none\n", "errors: [1, 2]\n"})
-    ExpectSays(DepthError(pmd_.substr(0, pmd_.find("errors:")) + errors), {"camera.yaml:", "'errors' must be a map"});
+    ExpectSays(DepthError(pmd_.substr(0, pmd_.find("errors:")) + errors),
+               {"camera.yaml:", "errors: expected a map of keys"});
 }
 
 TEST_F(Description, ColourCameraSheetIsTable43) {
@@ -596,7 +600,7 @@ TEST_F(Description, ColourCameraSheetIsTable43) {
 
 TEST_F(Description, SheetNamesTheNearestKeyAndItsLine) {
   const std::string text = Replaced(pmd_, "latency_ms", "latncy_ms");
-  ExpectSays(DepthError(text), {"camera.yaml:" + std::to_string(LineOf(text, "latncy_ms")), "'latncy_ms'",
+  ExpectSays(DepthError(text), {"camera.yaml:" + std::to_string(LineOf(text, "latncy_ms")), "latncy_ms: unknown key",
                                 "did you mean 'latency_ms'", "missing key 'latency_ms'"});
 }
 
@@ -607,8 +611,9 @@ TEST_F(Description, SheetReportsEveryFaultAtOnce) {
   text = Replaced(text, "frequencies_mhz: [20, 30]", "frequencies_mhz: [20, -30]");
   text = Replaced(text, "width_px: 64 ", "width_px: 64.5 ");
   const std::string error = DepthError(text);
-  for (const std::string key : {"contrast_at_20mhz", "read_noise_e", "readout_ms", "frequencies_mhz", "width_px"})
-    ExpectSays(error, {"camera.yaml:" + std::to_string(LineOf(text, "\n" + key) + 1) + ": '" + key + "'"});
+  for (const std::string key : {"contrast_at_20mhz", "read_noise_e", "readout_ms", "frequencies_mhz[1]", "width_px"})
+    ExpectSays(error, {"camera.yaml:" + std::to_string(LineOf(text, "\n" + key.substr(0, key.find('['))) + 1) + ": " +
+                       key + ": expected"});
   EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 4);
 }
 
@@ -624,10 +629,11 @@ TEST_F(Description, SheetRefusesValuesThatContradictEachOther) {
     EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 0) << error;
   };
   expect("frequencies_mhz: [20, 30]", "frequencies_mhz: [20, 30, 20.0]", "lists one twice");
-  expect("full_well_e: 1.5e+6", "full_well_e: 200", "full_well_e is not above read_noise_e");
+  expect("frequencies_mhz: [20, 30]", "frequencies_mhz: []", "expected one frequency at least");
+  expect("full_well_e: 1.5e+6", "full_well_e: 200", "full_well_e: is not above read_noise_e");
   // 4 x 0.1 ms and three times 1 ms of read-out are 3.4 ms: 294.1 Hz.
   expect("rate_max_hz: 120", "rate_max_hz: 295",
-         "'rate_max_hz': the four sub-frames of the shortest exposure take 3.4 ms");
+         "rate_max_hz: the four sub-frames of the shortest exposure take 3.4 ms");
   EXPECT_EQ(DepthError(Replaced(pmd_, "rate_max_hz: 120", "rate_max_hz: 294")), "");
   EXPECT_EQ(DepthError(Replaced(pmd_, "integration_min_us: 100 ", "integration_min_us: 1300 ")), "");
   EXPECT_EQ(DepthError(Replaced(pmd_, "full_well_e: 1.5e+6", "full_well_e: 201")), "");
@@ -641,8 +647,8 @@ TEST_F(Description, WrongValuesContradictNothing) {
 
 TEST_F(Description, SheetSaysWhetherTheChipSuppressesBackgroundLight) {
   EXPECT_FALSE(ReadDepthCameraSheet(File("camera.yaml", Replaced(pmd_, "sbi: true", "sbi: false"))).sbi);
-  ExpectSays(DepthError(Replaced(pmd_, "sbi: true", "sbi: 3")), {"'sbi': expected true or false, got '3'"});
-  ExpectSays(DepthError(Replaced(pmd_, "sbi: true", "sbi: [true]")), {"'sbi': expected true or false"});
+  ExpectSays(DepthError(Replaced(pmd_, "sbi: true", "sbi: 3")), {"sbi: expected true or false, got '3'"});
+  ExpectSays(DepthError(Replaced(pmd_, "sbi: true", "sbi: [true]")), {"sbi: expected true or false"});
   ExpectSays(DepthError(Replaced(pmd_, "sbi: true", "# none  ")), {"missing key 'sbi'"});
 }
 
@@ -651,8 +657,8 @@ TEST_F(Description, SheetRefusesWhatIsNoSheet) {
   ExpectSays(ColorError(""), {"camera.yaml"});
   ExpectSays(ColorError("- 1\n- 2\n"), {"camera.yaml", "map"});
   ExpectSays(ColorError("name: x\nwidth_px: [1\n"), {"camera.yaml:", "YAML"});
-  ExpectSays(ColorError(Replaced(ccd_, "fx_px: 780.037", "fx_px: {a: 1}")), {"'fx_px'"});
-  ExpectSays(DepthError(ccd_), {"missing key 'signal_e_m2_per_us'", "unknown key 'fx_px'"});
+  ExpectSays(ColorError(Replaced(ccd_, "fx_px: 780.037", "fx_px: {a: 1}")), {"fx_px: expected"});
+  ExpectSays(DepthError(ccd_), {"missing key 'signal_e_m2_per_us'", "fx_px: unknown key"});
 }
 
 }  // namespace

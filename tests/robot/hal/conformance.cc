@@ -66,6 +66,21 @@ TEST_P(HalConformance, DeliversAtItsRatesInOrderOfStamps) {
   for (std::size_t i = 1; i < session.drive.size(); ++i) EXPECT_GT(session.drive[i].stamp, session.drive[i - 1].stamp);
 }
 
+// What supervision and the pre-flight check go by (autonomy/supervise.h, scenarios/run/preflight.h).
+TEST_P(HalConformance, TellsInItsStatusTheRateAtWhichItDelivers) {
+  Session session(GetParam());
+  session.Drive(3.0, std::nullopt);
+  const auto expect = [](const DeviceStatus& status, std::size_t count) {
+    EXPECT_GT(status.rate_hz, 0.0);
+    EXPECT_NEAR(static_cast<double>(count) / 3.0, status.rate_hz, 0.2 * status.rate_hz);
+  };
+  expect(session.robot.depth->Status(), session.depth.size());
+  expect(session.robot.drive->Status(), session.drive.size());
+  if (session.robot.color) expect(session.robot.color->Status(), session.color.size());
+  if (session.robot.compass) expect(session.robot.compass->Status(), session.compass.size());
+  if (session.robot.pan) expect(session.robot.pan->Status(), session.pan.size());
+}
+
 TEST_P(HalConformance, HandsEachMeasurementOutOnceAndCountsIt) {
   Session session(GetParam());
   session.Drive(1.0, std::nullopt);

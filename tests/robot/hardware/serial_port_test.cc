@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "robot/base/error.h"
 #include "robot/emulated/pseudo_terminal.h"
+#include "tests/support/until.h"
 
 namespace merlin {
 namespace {
@@ -91,10 +95,55 @@ TEST(SerialPort, NoticesTheUnplugAndOpensAgain) {
   EXPECT_TRUE(port.is_open());
 }
 
-TEST(SerialPort, WakesFromItsWait) {
+TEST(SerialPort, WakesFromItsWaitOnceForEachWake) {
   SerialPort port({.port = "/dev/null", .baud = 9600});
+  EXPECT_FALSE(port.Wait(Duration(0)));
   port.Wake();
-  port.Wait(std::chrono::hours(1));  // returns at once
+  EXPECT_TRUE(port.Wait(std::chrono::hours(1)));
+  EXPECT_FALSE(port.Wait(Duration(0)));
+}
+
+// Nobody reads until the line is full and has taken a part of a message. The reader must still find whole messages, in
+// order; those that came while the tail waited are left out.
+TEST(SerialPort, SendsTheTailOfAShortWriteBeforeTheNextMessage) {
+  constexpr std::size_t kMessage_bytes = 1000;  // divides no buffer's size
+  constexpr std::uint8_t kSent = 200, kLast = 255;
+  PseudoTerminal terminal;
+  SerialPort port({.port = terminal.path(), .baud = 115200});
+  port.Open();
+  for (std::uint8_t number = 0; number < kSent; ++number) port.Write(Bytes(kMessage_bytes, number));
+  Bytes read;
+  ASSERT_TRUE(Until([&] {
+    const Bytes more = terminal.Read();
+    read.insert(read.end(), more.begin(), more.end());
+    port.Write(Bytes(kMessage_bytes, kLast));
+    return read.size() >= kMessage_bytes && std::ranges::count(read, kLast) >= 1;
+  }));
+  std::vector<int> numbers;
+  for (std::size_t at = 0; at + kMessage_bytes <= read.size(); at += kMessage_bytes) {
+    const BytesView message = BytesView(read).subspan(at, kMessage_bytes);
+    numbers.push_back(message.front());
+    ASSERT_EQ(std::ranges::count(message, message.front()), static_cast<std::ptrdiff_t>(kMessage_bytes))
+        << "message " << numbers.size() << " is a mixture";
+  }
+  std::erase(numbers, int{kLast});
+  ASSERT_LT(numbers.size(), std::size_t{kSent}) << "the line was never full";
+  EXPECT_EQ(std::ranges::adjacent_find(numbers, std::greater_equal{}), numbers.end()) << "out of order, or twice";
+}
+
+TEST(SerialPort, ForgetsTheTailWhenItIsOpenedAnew) {
+  const std::filesystem::path link =
+      std::filesystem::path(testing::TempDir()) / ("merlin_serial_tail_" + std::to_string(getpid()));
+  PseudoTerminal terminal(link);
+  SerialPort port({.port = link, .baud = 115200});
+  port.Open();
+  for (int i = 0; i < 200; ++i) port.Write(Bytes(1000, 1));
+  terminal.Open();  // unplugged and plugged in
+  port.Open();
+  port.Write(Bytes{7});
+  Bytes read;
+  ASSERT_TRUE(Until([&] { return !(read = terminal.Read()).empty(); }));
+  EXPECT_EQ(read, Bytes{7});
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ TEST(Twin, HasNoPanUnitAndNoStandUnlessTheyAreAskedFor) {
   TwinOptions options = Options(room);
   options.world.car.pan->moves = false;
   EXPECT_EQ(Twin(options).robot().pan, nullptr);
-  EXPECT_EQ(Twin(options).robot().stand, nullptr);
+  EXPECT_EQ(Twin(options).robot().turntable, nullptr);
 }
 
 TEST(Twin, ReportsTheLensItSeesThrough) {

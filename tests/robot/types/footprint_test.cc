@@ -16,11 +16,24 @@ TEST(Footprint, ReachesToTheFarthestCollisionShapeInTheBaseFrame) {
   box.T_link_shape.translation() = Eigen::Vector3d(0.05, 0.0, 0.0);
   car.links[1].collision.push_back(box);
   EXPECT_NEAR(FootprintOf(car).front_m, 0.45, 1e-12);
+  EXPECT_EQ(FootprintOf(car).rear_m, 0.0);  // all of it is ahead of base_link
   EXPECT_NEAR(FootprintOf(car).half_width_m, 0.15, 1e-12);
   EXPECT_NEAR(FootprintOf(car).height_m, 0.15, 1e-12);
   box.size_m = {0.02, 0.02, 1.0};  // a mast
   car.links[1].collision.push_back(box);
   EXPECT_NEAR(FootprintOf(car).height_m, 0.15, 1e-12);
+}
+
+TEST(Footprint, ReachesBehindTheBase) {
+  CarDescription car;
+  car.links.resize(1);
+  car.links[0].name = "base_link";
+  CarShape box;
+  box.size_m = {0.6, 0.3, 0.1};
+  box.T_link_shape.translation() = Eigen::Vector3d(0.18, 0.0, 0.0);
+  car.links[0].collision.push_back(box);
+  EXPECT_NEAR(FootprintOf(car).rear_m, 0.12, 1e-12);
+  EXPECT_NEAR(FootprintOf(car).front_m, 0.48, 1e-12);
 }
 
 TEST(Footprint, ReachesOverMeshesToo) {

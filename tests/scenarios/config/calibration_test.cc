@@ -65,8 +65,8 @@ TEST(Drives, NameWhatIsWrongWithThem) {
   ExpectSays(said("5.003", "-5.003"), "straights[0].distance_m: expected a number in [0.5, 1000], got '-5.003'");
   ExpectSays(said("2.6", ".nan"), "circles[0].diameter_m");
   ExpectSays(said("74112", "12.5"), "expected a whole number");
-  ExpectSays(said(", distance_m: 5.003", ""), "straights[0]: missing key 'distance_m'");
-  ExpectSays(said("steering_rad: -0.25, ", ""), "circles[1]: missing key 'steering_rad'");
+  ExpectSays(said(", distance_m: 5.003", ""), "f.yaml:2: straights[0]: missing key 'distance_m'");
+  ExpectSays(said("steering_rad: -0.25, ", ""), "f.yaml:5: circles[1]: missing key 'steering_rad'");
   ExpectSays(said("circles", "circels"), "missing key 'circles'");
   ExpectSays(said("{encoder", "encoder"), "f.yaml:");
   ExpectSays(ReadComplaint(ReadDrives, ""), "a file of measured drives");

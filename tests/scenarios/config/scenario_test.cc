@@ -61,6 +61,17 @@ TEST(Scenario, NamesUnknownKeysWithLineAndTheNearest) {
   EXPECT_TRUE(Has(said, "s.yaml:4: duraton_s: unknown key; did you mean 'duration_s'?")) << said;
 }
 
+TEST(Scenario, TakesTheFormerNameOfABehaviorWithAWarning) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "s.yaml";
+  std::ofstream(file) << "room: hall\ntask: {behavior: turn_on_stand, angle_deg: 90}\n";
+  const Scenario scenario = ReadScenario(file.string(), {});
+  EXPECT_EQ(scenario.task.behavior, "turn_on_turntable");
+  ASSERT_EQ(scenario.warnings.size(), 1u);
+  EXPECT_TRUE(Has(scenario.warnings[0], "'turn_on_stand' is now called 'turn_on_turntable'")) << scenario.warnings[0];
+  EXPECT_TRUE(ReadScenario("room_turn_180", {}).warnings.empty());
+}
+
 TEST(Scenario, ReportsEveryValueOutOfRangeAtOnce) {
   const std::string said = Complaint(
       "room: hall\nduration_s: -1\nsensors: {depth: {rate_hz: .nan}}\nseed: -4\ntask: {laps: 1.5}\npilot: {speed_m_s: "
@@ -73,12 +84,17 @@ TEST(Scenario, ReportsEveryValueOutOfRangeAtOnce) {
 
 TEST(Scenario, TellsWhatIsWrongWithTheFile) {
   EXPECT_TRUE(Has(Complaint("room: [hall\n"), "s.yaml:2: broken YAML"));
-  EXPECT_TRUE(Has(Complaint(""), "no scenario"));
-  EXPECT_TRUE(Has(Complaint("- a\n"), "no scenario"));
-  EXPECT_TRUE(Has(Complaint("seed: 1\n"), "room: missing"));
+  EXPECT_TRUE(Has(Complaint(""), "holds no map of keys; expected a scenario"));
+  EXPECT_TRUE(Has(Complaint("- a\n"), "holds no map of keys; expected a scenario"));
+  EXPECT_TRUE(Has(Complaint("seed: 1\n"), "s.yaml:1: missing key 'room'"));
   EXPECT_TRUE(Has(Complaint("room: hall\ncar: 5\n"), "s.yaml:2: car: expected a map"));
   EXPECT_TRUE(Has(Complaint("room: hall\nchecks: {collision_max: 0}\n"), "collisions_max"));
-  EXPECT_TRUE(Has(Complaint("room: hall\ntask: {behavior: follow_coridor}\n"), "did you mean 'follow_corridor'?"));
+  EXPECT_TRUE(Has(Complaint("room: hall\ntask: {behavior: follow_coridor}\n"),
+                  "s.yaml:2: task.behavior: unknown behavior 'follow_coridor'; did you mean 'follow_corridor'?"));
+  EXPECT_TRUE(Has(Complaint("room: hall\nobstacles:\n  - {}\n  - {appear_s: 5,\n     disappear_s: 5}\n"),
+                  "s.yaml:5: obstacles[1].disappear_s: expected a time after its appear_s"));
+  EXPECT_TRUE(
+      Has(Complaint("room: hall\nchecks: {laps_min: 1, laps_min: 2}\n"), "s.yaml:2: checks.laps_min: given twice"));
 }
 
 TEST(Scenario, TakesNumbersAsTypedAndNoKeyTwice) {
@@ -97,7 +113,7 @@ TEST(Scenario, KnowsAnOpenAndAClosedCurtain) {
   EXPECT_EQ(ReadScenario(file.string(), {}).curtain, "open");
   EXPECT_EQ(ReadScenario(file.string(), {"curtain=closed"}).curtain, "closed");
   EXPECT_TRUE(Has(ToYaml(ReadScenario(file.string(), {"curtain=closed"})), "curtain: closed"));
-  EXPECT_TRUE(Has(Complaint("room: hall\ncurtain: shut\n"), "curtain: expected open or closed, got 'shut'"));
+  EXPECT_TRUE(Has(Complaint("room: hall\ncurtain: shut\n"), "s.yaml:2: curtain: expected open or closed, got 'shut'"));
   EXPECT_TRUE(Has(Complaint("room: hall\ncurtain: [open]\n"), "s.yaml:2: curtain: expected a text"));
 }
 
@@ -113,7 +129,7 @@ TEST(Scenario, SetsOverrideTheFileAndAreCheckedAlike) {
   EXPECT_EQ(Complaint("room: hall\n", {"pilot.speed_m_s=0.3", "sensors.compass.rate_hz=5"}), "");
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.sped_m_s=0.3"}), "did you mean 'speed_m_s'?"));
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot.speed_m_s=fast"}),
-                  "--set: pilot.speed_m_s: expected a number, got 'fast'"));
+                  "--set: pilot.speed_m_s: expected a number in [0.05, 2], got 'fast'"));
   EXPECT_TRUE(Has(Complaint("room: hall\n", {"pilot"}), "not an assignment"));
   EXPECT_TRUE(Has(Complaint("room: hall\nseed: 3\n", {"seed.x=1"}), "has no keys below it"));
   const TemporaryFolder folder;

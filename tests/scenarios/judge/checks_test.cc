@@ -9,8 +9,8 @@
 namespace merlin {
 namespace {
 
-Check EvaluateOne(const std::string& name, double limit, const Metrics& metrics) {
-  return Evaluate({{name, limit}}, metrics, "test").at(0);
+Check EvaluateOne(const std::string& name, double limit, const Metrics& metrics, bool knows_truth = true) {
+  return Evaluate({{name, limit}}, metrics, knows_truth, "test").at(0);
 }
 
 TEST(Evaluate, PassesAtTheLimitAndFailsBeyond) {
@@ -78,11 +78,37 @@ TEST(Evaluate, RefusesAnUnknownNameAndNamesTheNearest) {
   EXPECT_NE(message({"stack_ms_max", 0}).find("unknown check"), std::string::npos);
   EXPECT_NE(message({"laps_min", std::nan("")}).find("a finite number"), std::string::npos);
   EXPECT_EQ(message({"laps_min", 1}), "");
-  EXPECT_THROW(Evaluate({{"lap_min", 1}}, {}, "x"), InputError);
+  EXPECT_THROW(Evaluate({{"lap_min", 1}}, {}, true, "x"), InputError);
+}
+
+// Every metric that a check may name, whether it compares with the truth: told here by what it means.
+TEST(Evaluate, DoesNotJudgeWithoutTruthWhatComparesWithIt) {
+  for (const char* name :
+       {"laps_min", "collisions_max", "ate_rmse_m_max", "ate_online_rmse_m_max", "rpe_translation_percent_max",
+        "rpe_rotation_deg_per_m_max", "map_size_m_min", "map_size_m.0_min", "map_size_error_percent_max",
+        "map_size_error_percent.1_max", "map_to_plan_p95_m_max", "coverage_percent_min", "obstacle_gap_m_min",
+        "obstacle_stop_s_min"}) {
+    EXPECT_FALSE(EvaluateOne(name, 0, {}, false).judged) << name;
+    EXPECT_FALSE(EvaluateOne(name, 0, {}, false).pass) << name;
+    EXPECT_TRUE(EvaluateOne(name, 0, {}, true).judged) << name;
+  }
+  for (const char* name : {"sim_time_s_min", "wall_time_s_max", "setup_s_max", "real_time_factor_min", "distance_m_min",
+                           "loops_closed_min", "depth_frames_min", "color_frames_min", "frames_dropped_max",
+                           "stack_ms.p50_max", "peak_rss_mb_max", "stack_rss_mb_max"})
+    EXPECT_TRUE(EvaluateOne(name, 0, {}, false).judged) << name;
+  EXPECT_FALSE(EvaluateOne("stack_rss_mb_max", 512, {}, true).judged);  // the simulation shares the process
+  Metrics metrics;
+  metrics.distance_m = 9.0;
+  EXPECT_TRUE(EvaluateOne("distance_m_min", 8, metrics, false).pass);
+  EXPECT_FALSE(EvaluateOne("distance_m_min", 10, metrics, false).pass);
+  EXPECT_FALSE(EvaluateOne("frames_dropped_max", 0, {}, false).pass);  // could have been known, and is not
 }
 
 TEST(Judge, FailsWithAnyCheck) {
-  EXPECT_EQ(Judge({}), Verdict::kPass);
+  EXPECT_EQ(Judge({}), Verdict::kNotJudged);
+  EXPECT_EQ(Judge({{.judged = false}, {.judged = false}}), Verdict::kNotJudged);
+  EXPECT_EQ(Judge({{.judged = false}, {.pass = true}}), Verdict::kPass);
+  EXPECT_EQ(Judge({{.pass = false}, {.judged = false}, {.pass = true}}), Verdict::kFail);
   EXPECT_EQ(Judge({{.pass = true}, {.pass = true}}), Verdict::kPass);
   EXPECT_EQ(Judge({{.pass = true}, {.pass = false}}), Verdict::kFail);
 }

@@ -65,7 +65,9 @@ TEST(ToJson, CarriesTheFigures) {
   result.metrics.map_size_m = {21.01, std::nullopt};
   result.metrics.stack_ms = {.p50 = 1.0, .p99 = 2.0, .max = 3.0};
   result.metrics.obstacle_gap_m = 0.35;
-  result.checks = {{.name = "laps_min", .value = 1.0, .limit = 1.0, .pass = true}, {.name = "x_max"}};
+  result.checks = {{.name = "laps_min", .value = 1.0, .limit = 1.0, .pass = true},
+                   {.name = "x_max"},
+                   {.name = "y_max", .judged = false}};
   result.hashes.state = "ab";
   result.versions = {{"merlin", "0.1.0"}, {"mujoco", "4.0.0"}};
   const Json json = Json::parse(ToJson(result));
@@ -94,18 +96,22 @@ TEST(ToJUnit, MakesEachCheckATestCase) {
   result.metrics.wall_time_s = 12.5;
   result.checks = {{.name = "laps_min", .value = 1.0, .limit = 1.0, .pass = true},
                    {.name = "ate_rmse_m_max", .value = 0.75, .limit = 0.5, .pass = false},
-                   {.name = "collisions_max", .value = std::nullopt, .limit = 0.0, .pass = false}};
-  EXPECT_EQ(ToJUnit(result),
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
-            "  <testsuite name=\"a&lt;b&amp;&quot;c&quot;? seed 7\" tests=\"4\" failures=\"2\" errors=\"0\" "
-            "time=\"12.500\">\n"
-            "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"run\" time=\"0\"/>\n"
-            "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"laps_min\" time=\"0\"/>\n"
-            "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"ate_rmse_m_max\" time=\"0\">\n"
-            "      <failure message=\"ate_rmse_m_max: value 0.75, limit 0.5\"/>\n    </testcase>\n"
-            "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"collisions_max\" time=\"0\">\n"
-            "      <failure message=\"collisions_max: value not known, limit 0\"/>\n    </testcase>\n"
-            "  </testsuite>\n</testsuites>\n");
+                   {.name = "collisions_max", .value = std::nullopt, .limit = 0.0, .pass = false},
+                   {.name = "coverage_percent_min", .limit = 90.0, .judged = false}};
+  EXPECT_EQ(
+      ToJUnit(result),
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
+      "  <testsuite name=\"a&lt;b&amp;&quot;c&quot;? seed 7\" tests=\"5\" failures=\"2\" errors=\"0\" skipped=\"1\" "
+      "time=\"12.500\">\n"
+      "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"run\" time=\"0\"/>\n"
+      "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"laps_min\" time=\"0\"/>\n"
+      "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"ate_rmse_m_max\" time=\"0\">\n"
+      "      <failure message=\"ate_rmse_m_max: value 0.75, limit 0.5\"/>\n    </testcase>\n"
+      "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"collisions_max\" time=\"0\">\n"
+      "      <failure message=\"collisions_max: value not known, limit 0\"/>\n    </testcase>\n"
+      "    <testcase classname=\"a&lt;b&amp;&quot;c&quot;?\" name=\"coverage_percent_min\" time=\"0\">\n"
+      "      <skipped message=\"not judged: this run cannot know it\"/>\n    </testcase>\n"
+      "  </testsuite>\n</testsuites>\n");
 }
 
 // What Python's XML parser reads of it: the class name of the first test case. Empty: not well formed.

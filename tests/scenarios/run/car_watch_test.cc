@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/world/room_box.h"
 #include "tests/sim/world/car_world.h"
 
 namespace merlin {
@@ -81,7 +82,9 @@ TEST(CarWatch, LosesACarThatLeavesTheRoomsBoxByAMetre) {
 }
 
 TEST(CarWatch, KnowsTheBoxOfEveryShape) {
-  const auto box = [](const std::string& room) { return RoomBox_m(*sim::MakeWorld(sim::Room(sim::kPlane + room))); };
+  const auto box = [](const std::string& room) {
+    return sim::RoomBox_m(*sim::MakeWorld(sim::Room(sim::kPlane + room)));
+  };
   const auto expect = [&](const std::string& room, double x0, double y0, double x1, double y1) {
     const auto got = box(room);
     ASSERT_TRUE(got) << room;
@@ -98,21 +101,22 @@ TEST(CarWatch, KnowsTheBoxOfEveryShape) {
 }
 
 TEST(CarWatch, LeavesObstaclesOutOfTheRoomsBox) {
-  const auto world = sim::MakeWorld(sim::Room(kArena), Pose::Identity(), {{.name = "x", .size_m = {20, 20, 1}}});
-  const auto box = RoomBox_m(*world);
+  const auto world =
+      sim::MakeWorld(sim::Room(kArena), Pose::Identity(), {{.appear_s = 1e3, .length_m = 20, .width_m = 20}});
+  const auto box = sim::RoomBox_m(*world);
   ASSERT_TRUE(box);
   EXPECT_NEAR(box->max().x(), 3.1, 1e-9);
 }
 
 TEST(CarWatch, LosesACarWhoseWheelsTouchNothingForHalfASecondButNotOnItsStand) {
   const sim::TemporaryFile file("room.xml", sim::Room(kArena));
-  sim::World world({.room = file.path(), .car = sim::Merlin(), .stand_rate_rad_s = 1.0});  // held in the air
-  CarWatch free(world, false), on_stand(world, true);
-  while (world.Now() < std::chrono::milliseconds(500)) world.Step(), free.Watch(world), on_stand.Watch(world);
+  sim::World world({.room = file.path(), .car = sim::Merlin(), .turntable_rate_rad_s = 1.0});  // held in the air
+  CarWatch free(world, false), on_turntable(world, true);
+  while (world.Now() < std::chrono::milliseconds(500)) world.Step(), free.Watch(world), on_turntable.Watch(world);
   EXPECT_EQ(free.lost(), "");
-  for (int i = 0; i < 1000; ++i) world.Step(), free.Watch(world), on_stand.Watch(world);
+  for (int i = 0; i < 1000; ++i) world.Step(), free.Watch(world), on_turntable.Watch(world);
   EXPECT_EQ(free.lost(), "at 0.502 s no wheel of the car had touched the ground for 0.5 s");
-  EXPECT_EQ(on_stand.lost(), "");
+  EXPECT_EQ(on_turntable.lost(), "");
 }
 
 // Onto a plate that is no floor: whatever carries the wheels is ground, a wall beside them is not.

@@ -95,7 +95,7 @@ TEST(CorridorShort, EndsInGoodOrderWhenInterrupted) {
                      .threads = 2,
                      .pace = 0.0,
                      .progress = {}};
-  options.progress = [&stop](Time now, double, const std::string&) { stop = stop || now > std::chrono::seconds(4); };
+  options.progress = [&stop](const LoopState& state) { stop = stop || state.now > std::chrono::seconds(4); };
   options.pace = 20.0;  // so that progress is told of before the end
   const RunReport report = RunScenario(options, stop);
   EXPECT_EQ(report.result.verdict, Verdict::kInterrupted);
@@ -166,11 +166,12 @@ TEST(EmptyBattery, LeavesTheCarStandingWithAReserve) {
   Twin twin(options);
   DriveLoop loop(twin.robot(), options.world.car, {}, {}, {}, {});
   bool warned = false, drove = false;
-  const auto tick = [&](Time, const Decision& decision) {
-    warned = warned || decision.doing.ends_with("battery low");
+  const auto watch = [&](const LoopState& state) {
+    warned = warned || Doing(state).ends_with("battery low");
     drove = drove || twin.world().Speed_m_s() > 0.4;
+    return true;
   };
-  EXPECT_EQ(loop.Run(never, {.depth = {}, .color = {}, .tick = tick}), LoopEnd::kBatteryEmpty);
+  EXPECT_EQ(loop.Run(never, watch), LoopEnd::kBatteryEmpty);
   EXPECT_TRUE(warned);
   EXPECT_TRUE(drove);
   EXPECT_LT(std::abs(twin.world().Speed_m_s()), 0.01);
@@ -192,17 +193,16 @@ TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
 
   double wrapped_m = HUGE_VAL, slowest_m_s = HUGE_VAL;
   std::atomic<bool> stop{false};
-  const auto depth = [&](const DepthFrame& frame) {  // raw: the ghosts must be there for the test to mean anything
-    const double wall_ahead_m = 13.2 - twin.world().T_world_base().translation().x() - 0.3;
-    const float middle_m = frame.range_m[24 * 64 + 32];
-    if (std::abs(wall_ahead_m - 9.5) < 0.1) wrapped_m = middle_m;
-  };
-  const auto tick = [&](Time, const Decision&) {
+  const auto watch = [&](const LoopState& state) {
     const double x_m = twin.world().T_world_base().translation().x();
+    const double wall_ahead_m = 13.2 - x_m - 0.3;
+    for (const auto& frame : state.heard.depth)  // raw: the ghosts must be there for the test to mean anything
+      if (std::abs(wall_ahead_m - 9.5) < 0.1) wrapped_m = frame->range_m[24 * 64 + 32];
     if (x_m > -10.5 && x_m < 10.0) slowest_m_s = std::min(slowest_m_s, twin.world().Speed_m_s());
     stop = x_m > 10.2;
+    return true;
   };
-  loop.Run(stop, {.depth = depth, .color = {}, .tick = tick});
+  loop.Run(stop, watch);
   ASSERT_TRUE(stop) << "did not get to the end of the straight";
   EXPECT_NEAR(wrapped_m, 9.5 - UnambiguousRange_m(20e6), 0.3);
   EXPECT_GT(slowest_m_s, 0.45);
@@ -219,6 +219,31 @@ TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
   }
   EXPECT_GT(points, 5000);
   EXPECT_LE(ghosts, points / 1000);
+}
+
+// The same place and time, as an actor.
+TEST(CorridorObstacle, StopsBeforeASphereToo) {
+  const TemporaryFolder folder;
+  const RunReport report = DriveScenario(
+      "corridor_obstacle", folder.path() / "a",
+      {"obstacles=[]",
+       "actors=[{name: ball, shape: sphere, size_m: [0.4], material: dark_box, path: [[8, 0.2, -9.5]], until_s: 22}]"},
+      2, sim::Gl::kOff);
+  const Metrics& m = report.result.metrics;
+  EXPECT_EQ(report.result.verdict, Verdict::kPass);
+  EXPECT_EQ(m.collisions, 0);
+  EXPECT_GE(*m.obstacle_gap_m, 0.3);
+  EXPECT_GE(*m.obstacle_stop_s, 5.0);
+  EXPECT_GE(*m.distance_m, 9.0);
+}
+
+// A person who walks towards the car, waits before it, then passes it.
+TEST(CorridorVisitor, StopsStaysAndDrivesOnWithoutATouch) {
+  const TemporaryFolder folder;
+  const RunReport report = DriveScenario("corridor_visitor", folder.path() / "a", {}, 2, sim::Gl::kOff);
+  EXPECT_EQ(report.result.verdict, Verdict::kPass);
+  EXPECT_EQ(report.result.metrics.collisions, 0);
+  EXPECT_GE(*report.result.metrics.obstacle_stop_s, 3.0);
 }
 
 }  // namespace

@@ -50,17 +50,18 @@ class ManualDrive : public ::testing::Test {
     Twin twin(options_);
     DriveLoop loop(twin.robot(), options_.world.car, {}, {}, {}, {});
     auto next = script.begin();
-    const Hand hand = [&](Time now) {
+    const ManualInput manual = [&](Time now) {
       for (; next != script.end() && Seconds(now) >= next->first; ++next) next->second();
       const bool there = device_.Read();
       return stick_.Update(device_.state(), there, now);
     };
-    const auto watch = [&](Time now, const HandStatus& status) {
+    const auto watch = [&](const LoopState& state) {
       const Pose T_world_base = twin.world().T_world_base();
-      moments_.push_back({Seconds(now), T_world_base.translation().x(), twin.world().Speed_m_s(), Yaw(T_world_base),
-                          status.state.steering_rad, status.arbitration.driver});
+      moments_.push_back({Seconds(state.now), T_world_base.translation().x(), twin.world().Speed_m_s(),
+                          Yaw(T_world_base), state.drive.steering_rad, state.arbitration.driver});
+      return true;
     };
-    return loop.Run(never, {.depth = {}, .color = {}, .tick = {}, .hand = watch}, hand);
+    return loop.Run(never, watch, manual);
   }
   const Moment& At(double t_s) const {
     return *std::ranges::find_if(moments_, [=](const Moment& moment) { return moment.t_s >= t_s; });
@@ -119,7 +120,7 @@ TEST_F(ManualDrive, GivesTheWheelToThePilotAndTakesItBack) {
               {6.5, [&] { pipe_.Axis(1, 0); }},
               {8.0, [&] { pipe_.Close(); }}});
   EXPECT_EQ(At(4.5).driver, Driver::kAutonomy);
-  EXPECT_NEAR(At(4.5).speed_m_s, PilotConfig{}.speed_m_s, 0.05);
+  EXPECT_NEAR(At(4.5).speed_m_s, FollowCorridorConfig{}.speed_m_s, 0.05);
   EXPECT_EQ(At(6.4).driver, Driver::kManual);
   EXPECT_LT(At(6.4).speed_m_s, -0.5);
   EXPECT_EQ(At(7.9).driver, Driver::kAutonomy);

@@ -47,7 +47,7 @@ Rig RigOf(const Robot& robot) {
           .T_base_depth = depth.T_base_camera,
           .color = std::nullopt,
           .pans = robot.pan != nullptr,
-          .on_stand = robot.stand != nullptr};
+          .on_turntable = robot.turntable != nullptr};
 }
 
 // Runs for a while and gives every observation to see.
@@ -64,10 +64,10 @@ void Watch(Twin& twin, double seconds, const See& see) {
       if (!state) break;
       pipeline.AddPan(*state);
     }
-    while (robot.stand) {
-      const auto state = robot.stand->Poll();
+    while (robot.turntable) {
+      const auto state = robot.turntable->Poll();
       if (!state) break;
-      pipeline.AddStand(*state);
+      pipeline.AddTurntable(*state);
     }
     while (auto frame = robot.depth->Poll())
       if (const auto observation = pipeline.Process(*frame)) see(*observation);
@@ -99,15 +99,15 @@ TEST(Pan, PutsPointsWhereTheyAreWhileTheCamerasTurn) {
   EXPECT_GT(on_the_right, 1000);
 }
 
-TEST(Stand, TellsTheOdometryWhatTheWheelsDoNotKnow) {
+TEST(Turntable, TellsTheOdometryWhatTheWheelsDoNotKnow) {
   const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
   TwinOptions options = Options(room);
-  options.world.stand_rate_rad_s = 1.0;
+  options.world.turntable_rate_rad_s = 1.0;
   Twin twin(options);
   std::vector<std::pair<Time, Pose>> truth;
   const Pose T_world_start = twin.world().T_world_base();
   twin.OnStep([&](sim::World& world) { truth.emplace_back(world.Now(), world.T_world_base()); });
-  twin.robot().stand->Send(-4.0);
+  twin.robot().turntable->Send(-4.0);
   int frames = 0;
   Watch(twin, 4.5, [&](const Observation& observation) {
     const auto at = std::ranges::find(truth, observation.stamp, &std::pair<Time, Pose>::first);
@@ -120,7 +120,7 @@ TEST(Stand, TellsTheOdometryWhatTheWheelsDoNotKnow) {
   EXPECT_GT(frames, 80);
 }
 
-TEST(Stand, IsTheTwinsAlone) {
+TEST(Turntable, IsTheTwinsAlone) {
   const TemporaryFolder folder;
   RunOptions options{.name = "room_turn_180",
                      .scenario = ReadScenario("room_turn_180", {}),
@@ -132,12 +132,12 @@ TEST(Stand, IsTheTwinsAlone) {
                      .progress = {}};
   EXPECT_THROW(RunScenario(options, never), InputError);
   options.robot = RobotKind::kTwin;
-  options.hand = [](Time) { return ManualWish{}; };
+  options.manual = [](Time) { return ManualCommand{}; };
   EXPECT_THROW(RunScenario(options, never), InputError);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "a"));
 }
 
-TEST(Stand, MapsTheRoomBehindItsCurtainFromOnePlace) {
+TEST(Turntable, MapsTheRoomBehindItsCurtainFromOnePlace) {
   const TemporaryFolder folder;
   const RunReport report = RunScenario({.name = "room_turn_360_curtain",
                                         .scenario = ReadScenario("room_turn_360_curtain", {}),

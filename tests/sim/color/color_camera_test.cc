@@ -200,6 +200,25 @@ TEST_F(ColorCameraTest, BlursWhatItPassesAndOnlyIfAskedTo) {
   EXPECT_NEAR(static_cast<double>(grey(blurred)), 2 * 16 * 7 / 8, 4.0);  // eight pictures make ramps of seven steps
 }
 
+// Seen from a body that moves as fast, a body that moves looks as if both stood; from one that stands, as it would look if
+// that one moved the other way.
+TEST_F(ColorCameraTest, BlursWhatMovesAsWhatItPasses) {
+  const SmallWorld world("<body pos='2 0 0'><freejoint/><geom type='box' size='.01 .1 .5' material='white'/></body>");
+  const CameraModel model{.width = 320, .height = 32, .fx_px = 400.0, .fy_px = 400.0, .cx_px = 159.5, .cy_px = 15.5};
+  const auto picture = [&](const Eigen::Vector3d& camera_m_s, const Eigen::Vector3d& bar_m_s) {
+    ColorCamera camera(world.model, NoiseFree(model), Gl::kAuto, 1, true);
+    BodyMotions bodies = MotionsOf(world.model, world.data);
+    bodies[1].velocity_m_s = bar_m_s;
+    auto shot =
+        camera.Take(world.model, world.data, {.T_world_body = CameraAt({0, 0, 0}), .velocity_m_s = camera_m_s}, bodies);
+    return camera.Expose(*shot, Fixed(0.02), Time{0}, 0).bgr;
+  };
+  const std::vector<std::uint8_t> sharp = picture({0, 0, 0}, {0, 0, 0});
+  EXPECT_EQ(picture({0, 4, 0}, {0, 4, 0}), sharp);
+  EXPECT_NE(picture({0, 0, 0}, {0, -4, 0}), sharp);
+  EXPECT_EQ(picture({0, 0, 0}, {0, -4, 0}), picture({0, 4, 0}, {0, 0, 0}));
+}
+
 TEST_F(ColorCameraTest, BlursAboutTheMiddleOfTheExposureInLinearLight) {
   const SmallWorld world("<geom type='box' size='.01 .1 .5' material='white' pos='2 0 0'/>");
   const CameraModel model{.width = 320, .height = 32, .fx_px = 400.0, .fy_px = 400.0, .cx_px = 159.5, .cy_px = 15.5};

@@ -43,14 +43,14 @@ inline std::string Room(const std::string& worldbody, const std::string& rest = 
 }
 
 inline std::unique_ptr<World> MakeWorld(const std::string& room, const Pose& T_world_start = Pose::Identity(),
-                                        const std::vector<Obstacle>& obstacles = {},
+                                        const std::vector<ObstacleConfig>& obstacles = {},
                                         const DrivetrainConfig& drivetrain = {}) {
   const TemporaryFile file("room.xml", room);
   return std::make_unique<World>(WorldOptions{.room = file.path(),
                                               .car = Merlin(),
                                               .T_world_start = T_world_start,
-                                              .obstacles = obstacles,
-                                              .drivetrain = drivetrain});
+                                              .drivetrain = drivetrain,
+                                              .obstacles = obstacles});
 }
 
 inline std::unique_ptr<World> EmptyWorld(const DrivetrainConfig& drivetrain = {}) {

@@ -72,8 +72,9 @@ TEST(ReadMaterials, KnowsWhatIsPassable) {
   EXPECT_FALSE(materials.Find("wall").passable);
   EXPECT_FALSE(materials.Find("never heard of").passable);
   ExpectContains(ErrorOf("materials:\n  cloth: {nir_albedo: 0.8, passable: 7}\n"),
-                 ":2: passable of material 'cloth'; expected true or false, got 7");
-  ExpectContains(ErrorOf("materials:\n  cloth: {nir_albedo: 0.8, passable: [true]}\n"), "passable of material 'cloth'");
+                 ":2: materials.cloth.passable: expected true or false, got '7'");
+  ExpectContains(ErrorOf("materials:\n  cloth: {nir_albedo: 0.8, passable: [true]}\n"),
+                 "materials.cloth.passable: expected true or false");
 }
 
 TEST(ReadMaterials, HasHalfAsDefaultWhenTheFileGivesNone) {
@@ -83,19 +84,21 @@ TEST(ReadMaterials, HasHalfAsDefaultWhenTheFileGivesNone) {
 
 TEST(ReadMaterials, NamesTheNearestKeyAndTheLine) {
   ExpectContains(ErrorOf("materials:\n  wall:\n    nir_albedo: 0.5\n    nir_albdo: 0.8\n"),
-                 ".yaml:4: unknown key 'nir_albdo'; expected 'nir_albedo'");
-  ExpectContains(ErrorOf("materials: {}\n\nmaterial: {}\n"), ".yaml:3: unknown key 'material'; expected 'materials'");
+                 ".yaml:4: materials.wall.nir_albdo: unknown key; did you mean 'nir_albedo'?");
+  ExpectContains(ErrorOf("materials: {}\n\nmaterial: {}\n"),
+                 ".yaml:3: material: unknown key; did you mean 'materials'?");
   ExpectContains(ErrorOf("defalt: {nir_albedo: 0.5}\nmaterials: {}\n"),
-                 ".yaml:1: unknown key 'defalt'; expected 'default'");
+                 ".yaml:1: defalt: unknown key; did you mean 'default'?");
 }
 
 TEST(ReadMaterials, RefusesAnAlbedoThatIsNone) {
   for (const char* albedo : {"1.01", "-0.1", ".nan", ".inf", "bright", "", "[0.5]", "0.5 m"}) {
     const std::string error = ErrorOf(std::string("materials:\n  wall: {nir_albedo: ") + albedo + "}\n");
-    ExpectContains(error, ".yaml:2: nir_albedo of material 'wall'; expected a number in [0, 1], got");
+    ExpectContains(error, ".yaml:2: materials.wall.nir_albedo: expected a number in [0, 1], got");
   }
-  ExpectContains(ErrorOf("materials:\n  wall: {}\n"), ".yaml:2: nir_albedo of material 'wall' is missing");
-  ExpectContains(ErrorOf("default: {nir_albedo: 2}\nmaterials: {}\n"), ".yaml:1: nir_albedo of material 'default'");
+  ExpectContains(ErrorOf("materials:\n  wall: {}\n"), ".yaml:2: materials.wall: missing key 'nir_albedo'");
+  ExpectContains(ErrorOf("default: {nir_albedo: 2}\nmaterials: {}\n"),
+                 ".yaml:1: default.nir_albedo: expected a number in [0, 1], got '2'");
 }
 
 TEST(ReadMaterials, TakesMirrorsGlassAndRetroReflectors) {
@@ -117,22 +120,21 @@ TEST(ReadMaterials, TakesMirrorsGlassAndRetroReflectors) {
 
 TEST(ReadMaterials, RefusesNumbersOutOfRange) {
   const auto refuse = [](const std::string& entry, const std::string& what) {
-    ExpectContains(ErrorOf("materials:\n  a: {nir_albedo: 0.5, " + entry + "}\n"), ".yaml:2: " + what);
+    ExpectContains(ErrorOf("materials:\n  a: {nir_albedo: 0.5, " + entry + "}\n"), ".yaml:2: materials.a." + what);
   };
   for (const char* value : {"-0.01", "1.01", ".nan", "bright", "[1]"}) {
-    refuse(std::string("mirror: ") + value, "mirror of material 'a'; expected a number in [0, 1], got");
-    refuse(std::string("glass_transmission: ") + value,
-           "glass_transmission of material 'a'; expected a number in [0, 1], got");
+    refuse(std::string("mirror: ") + value, "mirror: expected a number in [0, 1], got");
+    refuse(std::string("glass_transmission: ") + value, "glass_transmission: expected a number in [0, 1], got");
   }
   for (const char* value : {"0.99", "0", "-2", "10001", ".inf", ".nan"}) {
-    refuse(std::string("retro_gain: ") + value, "retro_gain of material 'a'; expected a number in [1, 10000], got");
+    refuse(std::string("retro_gain: ") + value, "retro_gain: expected a number in [1, 10000], got");
   }
-  refuse("miror: 0.1", "unknown key 'miror'; expected 'mirror'");
+  refuse("miror: 0.1", "miror: unknown key; did you mean 'mirror'?");
 }
 
 TEST(ReadMaterials, RefusesToReflectMoreThanComesIn) {
   ExpectContains(ErrorOf("materials:\n  a: {nir_albedo: 0.5, mirror: 0.51}\n"),
-                 ".yaml:2: nir_albedo + mirror of material 'a'; expected at most 1, got 1.01");
+                 ".yaml:2: materials.a.nir_albedo: nir_albedo + mirror: expected at most 1, got 1.01");
   for (const char* all :
        {"{nir_albedo: 0.7, mirror: 0.3}", "{nir_albedo: 0, mirror: 1}", "{nir_albedo: 0.9, mirror: 0.1}"}) {
     EXPECT_EQ(ErrorOf(std::string("materials:\n  a: ") + all + "\n"), "no error") << all;
@@ -140,25 +142,25 @@ TEST(ReadMaterials, RefusesToReflectMoreThanComesIn) {
 }
 
 TEST(ReadMaterials, RefusesAnotherShape) {
-  ExpectContains(ErrorOf(""), "no materials in the file");
-  ExpectContains(ErrorOf("- wall\n"), "no materials in the file");
-  ExpectContains(ErrorOf("default: {nir_albedo: 0.5}\n"), "no materials in the file");
-  ExpectContains(ErrorOf("materials: 0.5\n"), ".yaml:1: 'materials' is not a map");
-  ExpectContains(ErrorOf("materials:\n  wall: 0.5\n"), ".yaml:2: material 'wall' is not a map");
+  ExpectContains(ErrorOf(""), "holds no map of keys; expected a file of materials");
+  ExpectContains(ErrorOf("- wall\n"), "holds no map of keys; expected a file of materials");
+  ExpectContains(ErrorOf("default: {nir_albedo: 0.5}\n"), "missing key 'materials'");
+  ExpectContains(ErrorOf("materials: 0.5\n"), ".yaml:1: materials: expected a map of keys, got '0.5'");
+  ExpectContains(ErrorOf("materials:\n  wall: 0.5\n"), ".yaml:2: materials.wall: expected a map of keys, got '0.5'");
   ExpectContains(ErrorOf("materials:\n  a: {nir_albedo: 0.5}\n  a: {nir_albedo: 0.6}\n"),
-                 ".yaml:3: material 'a' is listed twice");
+                 ".yaml:3: materials.a: given twice");
 }
 
 TEST(ReadMaterials, ReportsAllFaultsAtOnce) {
   const std::string error = ErrorOf("materials:\n  a: {nir_albedo: 7}\n  b: {albedo: 1}\n");
-  ExpectContains(error, ".yaml:2: nir_albedo of material 'a'");
-  ExpectContains(error, ".yaml:3: unknown key 'albedo'");
-  ExpectContains(error, ".yaml:3: nir_albedo of material 'b' is missing");
+  ExpectContains(error, ".yaml:2: materials.a.nir_albedo: expected");
+  ExpectContains(error, ".yaml:3: materials.b.albedo: unknown key");
+  ExpectContains(error, ".yaml:3: materials.b: missing key 'nir_albedo'");
   EXPECT_EQ(ErrorOf("materials:\n  a: {mirror: 0.8}\n").find("nir_albedo + mirror"), std::string::npos);
   const std::string one = ErrorOf("materials:\n  a: {mirror: 2, glass_transmission: 2, retro_gain: 0}\n");
-  for (const char* field : {"nir_albedo", "mirror", "glass_transmission", "retro_gain"}) {
-    ExpectContains(one, std::string(".yaml:2: ") + field + " of material 'a'");
-  }
+  ExpectContains(one, ".yaml:2: materials.a: missing key 'nir_albedo'");
+  for (const char* field : {"mirror", "glass_transmission", "retro_gain"})
+    ExpectContains(one, std::string(".yaml:2: materials.a.") + field + ": expected a number in");
 }
 
 TEST(ReadMaterials, KnowsEveryMaterialOfTheRooms) {

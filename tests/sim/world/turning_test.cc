@@ -88,11 +88,11 @@ TEST(Turntable, GoesThereAtItsRateAndStays) {
 TEST(Turntable, TurnsTheCarAboutItsBaseOffTheFloor) {
   const TemporaryFile room("room.xml", Room(kPlane));
   WorldOptions options = Options(room);
-  options.stand_rate_rad_s = 1.0;
+  options.turntable_rate_rad_s = 1.0;
   World world(options);
   const Pose T_world_start = world.T_world_base();
-  EXPECT_NEAR(T_world_start.translation().z(), kStandHeight_m, 1e-9);
-  world.stand()->Send(2.0 * std::numbers::pi);
+  EXPECT_NEAR(T_world_start.translation().z(), kTurntableHeight_m, 1e-9);
+  world.turntable()->Send(2.0 * std::numbers::pi);
   StepFor(world, 0.5 * std::numbers::pi);
   EXPECT_LT((world.T_world_base().translation() - T_world_start.translation()).norm(), 1e-9);
   EXPECT_NEAR(WrapPi(Yaw(world.T_world_base()) - 0.7), 0.5 * std::numbers::pi, 0.003);

@@ -73,11 +73,11 @@ TEST(World, SpeedIsSignedAndAlongTheCar) {
 
 TEST(World, SameCommandsGiveTheSameBitsWhateverIsReadInBetween) {
   const auto run = [](bool read) {
-    const auto world = MakeWorld(Room(std::string(kPlane) + Wall(2.0, 0.1)), Pose::Identity(), {{.name = "box"}});
+    const auto world = MakeWorld(Room(std::string(kPlane) + Wall(2.0, 0.1)), Pose::Identity(), {{.ahead_m = 5.0}});
     Send(*world, 1.0, 0.1);
     for (int i = 0; i < 1500; ++i) {
       world->Step();
-      if (read) world->CarTouches(), world->ObstacleDistance_m("box"), Read(*world), world->T_world_base();
+      if (read) world->CarTouches(), world->ActorDistance_m(0, 10.0), Read(*world), world->T_world_base();
     }
     return world->State();
   };
@@ -150,47 +150,50 @@ TEST(World, OpticalFramesStandWhereTheDescriptionSays) {
 
 TEST(World, ObstacleComesAndGoes) {
   const auto world =
-      MakeWorld(Room(kPlane), Pose::Identity(), {{.name = "box", .size_m = {0.4, 0.6, 0.5}}, {.name = "other"}});
+      MakeWorld(Room(kPlane), Pose::Identity(),
+                {{.appear_s = 0.1, .disappear_s = 0.3, .ahead_m = 2.8, .width_m = 0.6}, {.appear_s = 1e3}});
+  EXPECT_FALSE(world->actors().present(0));
+  EXPECT_EQ(world->ActorDistance_m(0, 10.0), 10.0);
+  EXPECT_NEAR(world->ActorDistance_m(0, 1e3), world->ActorDistance_m(1, 1e3), 1e-9);
   StepFor(*world, 0.1);
-  EXPECT_EQ(world->ObstacleDistance_m("box"), 10.0);
-  EXPECT_NEAR(world->ObstacleDistance_m("box", 1e3), world->ObstacleDistance_m("other", 1e3), 1e-9);
-  world->PlaceObstacle("box", FromXyYaw(3.0, 0.0, 0.0));
-  EXPECT_NEAR(world->ObstacleDistance_m("box"), 3.0 - 0.2 - 0.45, 1e-3);  // half a box, the car's front
-  EXPECT_EQ(world->ObstacleDistance_m("box", 1.0), 1.0);
-  world->PlaceObstacle("box", FromXyYaw(3.0, 0.0, std::numbers::pi / 2));
-  EXPECT_NEAR(world->ObstacleDistance_m("box"), 3.0 - 0.3 - 0.45, 1e-3);
-  const int geom = mj_name2id(world->model(), mjOBJ_GEOM, "obstacle_box");
+  EXPECT_TRUE(world->actors().present(0));
+  EXPECT_NEAR(world->ActorDistance_m(0, 10.0), 2.8 - 0.45, 1e-3);  // before the car's front
+  EXPECT_EQ(world->ActorDistance_m(0, 1.0), 1.0);
+  const int geom = mj_name2id(world->model(), mjOBJ_GEOM, "obstacle_0");
+  EXPECT_NEAR(world->data()->geom_xpos[3 * geom], 3.0, 1e-3);        // half a box farther
   EXPECT_NEAR(world->data()->geom_xpos[3 * geom + 2], 0.25, 1e-12);  // stands on the floor
   StepFor(*world, 0.1);
   EXPECT_TRUE(world->CarTouches().empty());
-  world->RemoveObstacle("box");
-  EXPECT_EQ(world->ObstacleDistance_m("box"), 10.0);
+  StepFor(*world, 0.1);
+  EXPECT_EQ(world->ActorDistance_m(0, 10.0), 10.0);
   Send(*world, 1.0, 0.0);
   StepFor(*world, 4.0);
   EXPECT_GT(world->T_world_base().translation().x(), 3.5);
   EXPECT_TRUE(world->CarTouches().empty());
 }
 
+TEST(World, ObstacleStandsAheadOfTheCarWhereverThatIs) {
+  const auto world = MakeWorld(Room(kPlane), FromXyYaw(1.0, 2.0, std::numbers::pi / 2),
+                               {{.ahead_m = 2.0, .left_m = 0.5, .length_m = 0.4}});
+  const int geom = mj_name2id(world->model(), mjOBJ_GEOM, "obstacle_0");
+  EXPECT_NEAR(world->data()->geom_xpos[3 * geom], 0.5, 1e-9);
+  EXPECT_NEAR(world->data()->geom_xpos[3 * geom + 1], 2.0 + 2.2, 1e-9);
+}
+
 TEST(World, ObstacleStopsTheCar) {
-  const auto world = MakeWorld(Room(kPlane), Pose::Identity(), {{.name = "box"}});
-  world->PlaceObstacle("box", FromXyYaw(1.5, 0.0, 0.0));
+  const auto world = MakeWorld(Room(kPlane), Pose::Identity(), {{.ahead_m = 1.3}});
   Send(*world, 0.5, 0.0);
   while (world->Now() < FromSeconds(4.0) && world->CarTouches().empty()) world->Step();
   ASSERT_FALSE(world->CarTouches().empty());
-  EXPECT_EQ(world->CarTouches()[0].other_geom, "obstacle_box");
-  EXPECT_NEAR(world->ObstacleDistance_m("box"), 0.0, 0.002);
+  EXPECT_EQ(world->CarTouches()[0].other_geom, "obstacle_0");
+  EXPECT_NEAR(world->ActorDistance_m(0, 10.0), 0.0, 0.002);
   StepFor(*world, 2.0);
-  EXPECT_NEAR(world->ObstacleDistance_m("box"), 0.0, 0.005);
+  EXPECT_NEAR(world->ActorDistance_m(0, 10.0), 0.0, 0.005);
 }
 
-TEST(World, RefusesAnUnknownOrImpossibleObstacle) {
-  const auto world = EmptyWorld();
-  ExpectSays(ErrorOf([&] { world->PlaceObstacle("box", Pose::Identity()); }), {"'box'", "no such obstacle"});
-  ExpectSays(ErrorOf([&] { world->ObstacleDistance_m(""); }), {"no such obstacle"});
-  ExpectSays(ErrorOf([] {
-               MakeWorld(Room(kPlane), Pose::Identity(), {{.name = "flat", .size_m = {1, 1, 0}}});
-             }),
-             {"'flat'", "size"});
+TEST(World, RefusesAnObstacleThatStartsInTheCar) {
+  ExpectSays(ErrorOf([] { MakeWorld(Room(kPlane), Pose::Identity(), {{.ahead_m = 0.0}}); }),
+             {"obstacle 0", "touches the car"});
 }
 
 TEST(World, ReadsPlanAndNorth) {

@@ -243,14 +243,34 @@ TEST(G2oFile, SurvivesBrokenTexts) {
   EXPECT_LT(taken, kTexts / 2);
 }
 
+std::ptrdiff_t CountOf(const std::string& text, const std::string& word) {
+  std::ptrdiff_t count = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+  return count;
+}
+
+// A file that was cut off: taken with every line that is there, or refused by one sentence. Cut after the line of an
+// edge, it is taken.
 TEST(G2oFile, EveryPrefixIsTakenOrRefused) {
-  for (const std::string& whole : {kPlanar, kSpatial})
+  for (const std::string& whole : {kPlanar, kSpatial}) {
+    int taken = 0;
     for (std::size_t length = 0; length < whole.size(); ++length) {
+      const std::string text = whole.substr(0, length);
+      const std::size_t last_line = length < 2 ? 0 : text.rfind('\n', length - 2) + 1;  // npos + 1 is 0
+      const bool ends_with_an_edge = text.ends_with('\n') && text.substr(last_line).starts_with("EDGE");
       try {
-        ParseG2o(whole.substr(0, length), "f.g2o");
-      } catch (const InputError&) {
+        const G2oFile file = ParseG2o(text, "f.g2o");
+        ++taken;
+        EXPECT_EQ(std::ssize(file.graph.edges), CountOf(text, "EDGE")) << text;
+        EXPECT_EQ(std::ssize(file.ids), std::ssize(file.graph.poses)) << text;
+        EXPECT_EQ(std::ssize(file.ids), CountOf(text, "VERTEX")) << text;
+      } catch (const InputError& error) {
+        EXPECT_TRUE(std::string_view(error.what()).starts_with("f.g2o")) << error.what();
+        EXPECT_FALSE(ends_with_an_edge) << text;
       }
     }
+    EXPECT_GT(taken, 0) << whole;
+  }
 }
 
 }  // namespace

@@ -172,7 +172,7 @@ TEST(Ply, LeavesBytesBehindBinaryDataWithAWarning) {
   for (const std::string& more : {std::string(5, '\0'), std::string("\nend\n")}) {
     const CloudFile file = ParsePly(PlyHeader("binary_little_endian", elements) + Bytes<float>({1, 2, 3}) + more, "f");
     ExpectPoints(file, {{1, 2, 3}});
-    EXPECT_EQ(Warning(file), "f: 5 bytes behind the data that its header tells of are not read");
+    EXPECT_EQ(Warning(file), "f: 5 bytes behind the data that the header announces are not read");
   }
 }
 
@@ -214,7 +214,7 @@ TEST(Ply, NamesEveryFaultAtOnce) {
 TEST(Pcd, LeavesBytesBehindBinaryDataWithAWarning) {
   const CloudFile file = ParsePcd(PcdHeader("1", "binary") + Bytes<float>({1, 2, 3}) + std::string(4096, '\0'), "f");
   ExpectPoints(file, {{1, 2, 3}});
-  EXPECT_EQ(Warning(file), "f: 4096 bytes behind the data that its header tells of are not read");
+  EXPECT_EQ(Warning(file), "f: 4096 bytes behind the data that the header announces are not read");
 }
 
 // The fields' bytes one field after the other, as a run of bytes that are as they are.

@@ -12,7 +12,7 @@ constexpr HandLimits kLimits{.speed_m_s = 0.8, .steering_rad = 0.4};
 constexpr Time kNow = std::chrono::seconds(3);
 constexpr Duration kStep = std::chrono::milliseconds(100);
 
-ManualWish After(const std::string& typed) {
+ManualCommand After(const std::string& typed) {
   Keys keys(kLimits);
   keys.Feed(typed, kNow);
   return keys.Wish(kNow);
@@ -29,7 +29,7 @@ TEST(Keys, DriveAheadBackLeftAndRight) {
 }
 
 TEST(Keys, SteerInStepsUpToTheLimitWhileDrivingOn) {
-  const ManualWish wish = After("waaaaaaaaaaaa");
+  const ManualCommand wish = After("waaaaaaaaaaaa");
   EXPECT_DOUBLE_EQ(wish.steering_rad, 0.4);
   EXPECT_DOUBLE_EQ(wish.speed_m_s, 0.8);
   EXPECT_DOUBLE_EQ(After("waaw").steering_rad, 0.0);  // straight on again
@@ -41,7 +41,7 @@ TEST(Keys, LetGoWhenNoneIsTypedForAWhile) {
   keys.Feed("w", kNow);
   keys.Feed("a", kNow + 6 * kStep);
   EXPECT_TRUE(keys.Wish(kNow + 12 * kStep).held);
-  const ManualWish wish = keys.Wish(kNow + 6 * kStep + Keys::kLetGo);
+  const ManualCommand wish = keys.Wish(kNow + 6 * kStep + Keys::kLetGo);
   EXPECT_FALSE(wish.held);
   EXPECT_EQ(wish.speed_m_s, 0.0);
   EXPECT_EQ(wish.steering_rad, 0.0);
@@ -51,7 +51,7 @@ TEST(Keys, LetGoWhenNoneIsTypedForAWhile) {
 }
 
 TEST(Keys, StopAtOnceForSpaceAutonomyToo) {
-  const ManualWish wish = After("pw ");
+  const ManualCommand wish = After("pw ");
   EXPECT_FALSE(wish.held);
   EXPECT_FALSE(wish.autonomy);
   EXPECT_TRUE(After("p").autonomy);
@@ -80,7 +80,7 @@ TEST(Keys, StayWithinTheLimitsWhateverIsTyped) {
   for (int i = 0; i < 100000; ++i) {
     const char c = static_cast<char>(random());
     keys.Feed(std::string_view(&c, 1), kNow + i * kStep / 10);
-    const ManualWish wish = keys.Wish(kNow + i * kStep / 10);
+    const ManualCommand wish = keys.Wish(kNow + i * kStep / 10);
     ASSERT_LE(std::abs(wish.speed_m_s), kLimits.speed_m_s);
     ASSERT_LE(std::abs(wish.steering_rad), kLimits.steering_rad + 1e-12);
   }

@@ -10,14 +10,14 @@ namespace {
 constexpr HandLimits kLimits{.speed_m_s = 0.7, .steering_rad = 0.35};
 constexpr Duration kTick = std::chrono::milliseconds(50);
 
-ManualWish Ahead(Time now) {
+ManualCommand Ahead(Time now) {
   return {.heard = now, .held = true, .speed_m_s = 0.7, .steering_rad = -0.1, .autonomy = true};
 }
 
 TEST(RadioHand, TellsTheCarWhatTheHandWantsInSevenths) {
   for (const int baud : {9600, 19200, 57600, 115200}) {
     RadioHand hand({.baud = baud}, kLimits, 1);
-    ManualWish heard;
+    ManualCommand heard;
     for (Time now{0}; now < 10 * kTick; now += kTick) heard = hand.Send(Ahead(now), now);
     EXPECT_TRUE(heard.held) << baud;
     EXPECT_TRUE(heard.autonomy);
@@ -30,11 +30,11 @@ TEST(RadioHand, TellsTheCarWhatTheHandWantsInSevenths) {
 
 TEST(RadioHand, IsAsLateAsTheRadio) {
   RadioHand hand({.baud = 9600}, kLimits, 1);
-  const ManualWish first = hand.Send(Ahead(Time(0)), Time(0));
+  const ManualCommand first = hand.Send(Ahead(Time(0)), Time(0));
   EXPECT_FALSE(first.held);
   EXPECT_LT(first.heard, Time(0));
   // 10 bytes: 10.4 ms on the cable, 1.6 ms of silence, 5 ms, 1.3 ms on air, 10.4 ms on the cable: 28.7 ms.
-  ManualWish wish = Ahead(Time(0));
+  ManualCommand wish = Ahead(Time(0));
   wish.heard = Time(-1);  // nothing more is sent
   Time now{0};
   while (!hand.Send(wish, now).held && now < kTick) now += std::chrono::microseconds(100);
@@ -45,7 +45,7 @@ TEST(RadioHand, AgesWhenTheStationsStickHasGoneOrNothingIsHeard) {
   RadioHand hand({.baud = 57600}, kLimits, 1);
   Time now{0};
   for (; now < 10 * kTick; now += kTick) hand.Send(Ahead(now), now);
-  ManualWish gone = Ahead(now);  // of the last tick it was there
+  ManualCommand gone = Ahead(now);  // of the last tick it was there
   Time last_heard{0};
   for (; now < 30 * kTick; now += kTick) last_heard = hand.Send(gone, now).heard;
   EXPECT_LE(last_heard, 12 * kTick);
@@ -56,9 +56,9 @@ TEST(RadioHand, AgesWhenTheStationsStickHasGoneOrNothingIsHeard) {
 
 TEST(RadioHand, NeverCarriesWhatIsNoNumber) {
   RadioHand hand({.baud = 57600}, kLimits, 1);
-  ManualWish heard;
+  ManualCommand heard;
   for (Time now{0}; now < 10 * kTick; now += kTick) {
-    ManualWish wish = Ahead(now);
+    ManualCommand wish = Ahead(now);
     wish.speed_m_s = std::nan("");
     heard = hand.Send(wish, now);
   }

@@ -19,7 +19,7 @@ joystick::State At(double right, double back) {
 
 TEST(Stick, SteersLeftToTheLeftAndDrivesAheadToTheFront) {
   Stick stick(kStickLimits);
-  ManualWish wish = stick.Update(At(-1.0, -1.0), true, kStickTime);
+  ManualCommand wish = stick.Update(At(-1.0, -1.0), true, kStickTime);
   EXPECT_TRUE(wish.held);
   EXPECT_DOUBLE_EQ(wish.steering_rad, 0.4);
   EXPECT_DOUBLE_EQ(wish.speed_m_s, 0.8);
@@ -32,12 +32,12 @@ TEST(Stick, SteersLeftToTheLeftAndDrivesAheadToTheFront) {
 TEST(Stick, IsLetGoInTheMiddleAndStartsFromZeroBeyondTheDeadZone) {
   Stick stick(kStickLimits);
   for (const double rest : {0.0, 0.11, -0.11}) {
-    const ManualWish wish = stick.Update(At(rest, rest), true, kStickTime);
+    const ManualCommand wish = stick.Update(At(rest, rest), true, kStickTime);
     EXPECT_FALSE(wish.held) << rest;
     EXPECT_EQ(wish.speed_m_s, 0.0);
     EXPECT_EQ(wish.steering_rad, 0.0);
   }
-  const ManualWish wish = stick.Update(At(0.0, -0.13), true, kStickTime);
+  const ManualCommand wish = stick.Update(At(0.0, -0.13), true, kStickTime);
   EXPECT_TRUE(wish.held);
   EXPECT_NEAR(wish.speed_m_s, 0.8 * 0.01 / 0.88, 1e-12);
   EXPECT_NEAR(stick.Update(At(0.0, -0.56), true, kStickTime).speed_m_s, 0.4, 1e-12);  // half of what is left of the way
@@ -70,7 +70,7 @@ TEST(Stick, SwitchesAutonomyAtEachPressAndOverridesWhileHeld) {
 TEST(Stick, LetsGoAndAgesWhenItHasGone) {
   Stick stick(kStickLimits);
   EXPECT_TRUE(stick.Update(At(0.0, -1.0), true, kStickTime).held);
-  const ManualWish wish = stick.Update(At(0.0, -1.0), false, kStickTime + std::chrono::seconds(1));
+  const ManualCommand wish = stick.Update(At(0.0, -1.0), false, kStickTime + std::chrono::seconds(1));
   EXPECT_FALSE(wish.held);
   EXPECT_EQ(wish.speed_m_s, 0.0);
   EXPECT_EQ(wish.heard, kStickTime);
@@ -78,7 +78,7 @@ TEST(Stick, LetsGoAndAgesWhenItHasGone) {
 
 TEST(Stick, NeverWishesWhatIsNoNumber) {
   for (int i = -100; i <= 100; ++i) {
-    const ManualWish wish = Stick(kStickLimits).Update(At(i / 100.0, -i / 100.0), true, kStickTime);
+    const ManualCommand wish = Stick(kStickLimits).Update(At(i / 100.0, -i / 100.0), true, kStickTime);
     EXPECT_LE(std::abs(wish.speed_m_s), kStickLimits.speed_m_s);
     EXPECT_LE(std::abs(wish.steering_rad), kStickLimits.steering_rad);
   }

@@ -1,0 +1,23 @@
+// What bends the field that a compass reads.
+#pragma once
+
+#include "robot/base/config.h"
+
+namespace merlin {
+
+// Steel in a wall or floor: it turns the field around it, most right at it, by exp(-1/2 (distance / reach)^2).
+struct Steel {
+  double x_m = 0.0, y_m = 0.0;  // in the room's frame
+  double reach_m = 1.0;         // [0.05, 100]
+  double bend_rad = 0.2;  // [-3, 3] of the heading right at it; corridors of reinforced concrete: 2-20 deg (guess)
+};
+
+template <class Visitor>
+void Visit(Visitor& v, Steel& c) {
+  v("x_m", c.x_m, {-1e4, 1e4});
+  v("y_m", c.y_m, {-1e4, 1e4});
+  v("reach_m", c.reach_m, {0.05, 100.0});
+  v("bend_rad", c.bend_rad, {-3.0, 3.0});
+}
+
+}  // namespace merlin

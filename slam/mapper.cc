@@ -1,0 +1,161 @@
+#include "slam/mapper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "slam/map/moved_away.h"
+
+namespace merlin {
+namespace {
+
+constexpr std::size_t kViewsMax = 4;   // of a key frame: its own, and three, as many as decide that something has gone
+constexpr double kViewsApart_s = 0.3;  // between two views of one place, while the car does not move...
+constexpr double kAgainApart_s = 0.8;  // ...or comes by again: a further lap keeps less than 10 MB
+constexpr double kRecent_m = 1.0;      // loops are searched with what was seen over this distance
+constexpr double kNear_m = 4.0;        // former key frames with view centres nearer than this join the local map...
+constexpr int kRecalledPerFrame = 2;   // ...so many a frame: it keeps up at 4 m/s
+constexpr double kPruneEvery_m = 1.0;
+
+double DistanceOfViews_m(const Pose& a, const Pose& b) { return (ViewCentre(a) - ViewCentre(b)).norm(); }
+
+}  // namespace
+
+Pose Mapper::Add(const Observation& observation, const Pose& T_map_base, double path_m, std::optional<double> yaw_rad) {
+  path_m_ = path_m;
+  Keep(observation, T_map_base, yaw_rad);
+  const Pose T_map_corrected = closer_.IsDue(path_m) ? CloseLoop(observation, T_map_base) : T_map_base;
+  if (closer_.KnowsThePlace(path_m)) RecallFormerVisit(T_map_corrected);
+  return T_map_corrected;
+}
+
+void Mapper::EndFrame(double path_m) {
+  if (path_m - pruned_at_m_ > kPruneEvery_m) {
+    local_.ForgetBefore(path_m - config_.local_length_m);
+    pruned_at_m_ = path_m;
+  }
+  grid_.Follow(keyframes_);
+}
+
+// A new key frame, or, where the place has one already, one more view of it.
+void Mapper::Keep(const Observation& observation, const Pose& T_map_base, std::optional<double> yaw_rad) {
+  if (keyframes_.empty()) return AddKeyframe(observation, T_map_base, Pose::Identity(), yaw_rad);
+  const Pose since = keyframes_.back().T_map_base.inverse() * T_map_base;
+  const bool moved =
+      since.translation().norm() >= config_.keyframe_distance_m || std::abs(Yaw(since)) >= config_.keyframe_angle_rad;
+  if (!moved) return AddView(observation, T_map_base, keyframes_.back());
+  if (Keyframe* const former = NearestOfFormerVisit(T_map_base)) return AddView(observation, T_map_base, *former);
+  AddKeyframe(observation, T_map_base, since, yaw_rad);
+}
+
+void Mapper::AddKeyframe(const Observation& observation, const Pose& T_map_base, const Pose& T_previous_base,
+                         std::optional<double> yaw_rad) {
+  local_.Insert(observation.points_base, T_map_base, path_m_);
+  keyframes_.push_back({.stamp = observation.stamp,
+                        .T_map_base = T_map_base,
+                        .T_previous_base = T_previous_base,
+                        .path_m = path_m_,
+                        .yaw_rad = yaw_rad,
+                        .yaw_sigma_rad = observation.yaw_sigma_rad,
+                        .points_base = observation.points_base,
+                        .camera_base = observation.camera_base,
+                        .views = {{observation.stamp, Pose::Identity(), ClearView(observation)}},
+                        .in_local_map_m = path_m_});
+  grid_.Add(keyframes_.back());
+  viewed_at_ = observation.stamp;
+}
+
+// What has come or gone in a place that has a key frame is worth keeping, though it needs no further key frame.
+void Mapper::AddView(const Observation& observation, const Pose& T_map_base, Keyframe& keyframe) {
+  const bool again = &keyframe != &keyframes_.back();
+  if (Seconds(observation.stamp - viewed_at_) < (again ? kAgainApart_s : kViewsApart_s)) return;
+  viewed_at_ = observation.stamp;
+  std::vector<PlacedView>& views = keyframe.views;
+  if (views.size() == kViewsMax) views.erase(views.begin() + 1);
+  views.push_back({observation.stamp, keyframe.T_map_base.inverse() * T_map_base, ClearView(observation)});
+}
+
+// Null: the place is not known from a former visit, or no key frame of it is near.
+Keyframe* Mapper::NearestOfFormerVisit(const Pose& T_map_base) {
+  Keyframe* nearest = nullptr;
+  double nearest_m = config_.revisit_m;
+  if (!closer_.KnowsThePlace(path_m_)) return nullptr;
+  for (Keyframe& keyframe : keyframes_) {
+    if (path_m_ - keyframe.path_m < config_.loop.apart_m) continue;
+    if (std::abs(WrapPi(Yaw(keyframe.T_map_base) - Yaw(T_map_base))) >= config_.revisit_rad) continue;
+    const double distance_m = (keyframe.T_map_base.translation() - T_map_base.translation()).head<2>().norm();
+    if (distance_m < nearest_m) nearest = &keyframe, nearest_m = distance_m;
+  }
+  return nearest;
+}
+
+// Of this frame and of the key frames on the last metre, in this frame's base, thinned.
+std::vector<Point> Mapper::RecentPoints(const Observation& observation, const Pose& T_map_base) const {
+  std::vector<Point> points = observation.points_base;
+  for (auto keyframe = keyframes_.rbegin(); keyframe != keyframes_.rend() && path_m_ - keyframe->path_m < kRecent_m;
+       ++keyframe) {
+    const Eigen::Isometry3f T = (T_map_base.inverse() * keyframe->T_map_base).cast<float>();
+    for (Point point : keyframe->points_base) {
+      point.position = T * point.position;
+      points.push_back(point);
+    }
+  }
+  return Downsample(points, config_.source_voxel_m);
+}
+
+// The pose of this frame, corrected where it closes a loop.
+Pose Mapper::CloseLoop(const Observation& observation, const Pose& T_map_base) {
+  const auto corrected = closer_.Search(keyframes_, RecentPoints(observation, T_map_base), T_map_base, path_m_);
+  if (!corrected) return T_map_base;
+  double moved_m = 0.0;
+  for (std::size_t i = 0; i < corrected->size(); ++i)
+    moved_m = std::max(moved_m, ((*corrected)[i].translation() - keyframes_[i].T_map_base.translation()).norm());
+  if (moved_m < config_.correction_min_m) return T_map_base;
+  const Pose T_map_corrected = corrected->back() * keyframes_.back().T_map_base.inverse() * T_map_base;
+  MoveKeyframes(*corrected);
+  return T_map_corrected;
+}
+
+// The local map is made anew at once, because the next frame is registered against it.
+void Mapper::MoveKeyframes(const std::vector<Pose>& corrected) {
+  for (std::size_t i = 0; i < corrected.size(); ++i) keyframes_[i].T_map_base = corrected[i];
+  grid_.Renew();
+  std::vector<PlacedPoints> near;
+  for (Keyframe& keyframe : keyframes_) {
+    const bool recent = path_m_ - keyframe.path_m < config_.local_length_m;
+    if (!recent && DistanceOfViews_m(keyframe.T_map_base, corrected.back()) > kNear_m) continue;
+    near.push_back({keyframe.points_base, keyframe.T_map_base});
+    keyframe.in_local_map_m = path_m_;
+  }
+  local_ = VoxelMap(config_.local);
+  local_.InsertAll(near, path_m_);
+}
+
+// Puts what a former visit saw here into the local map, so that the next frames are registered against it.
+void Mapper::RecallFormerVisit(const Pose& T_map_base) {
+  int left = kRecalledPerFrame;
+  for (Keyframe& keyframe : keyframes_) {
+    if (left == 0) return;
+    if (path_m_ - keyframe.in_local_map_m < config_.local_length_m) continue;
+    if (DistanceOfViews_m(keyframe.T_map_base, T_map_base) > kNear_m) continue;
+    if (std::abs(WrapPi(Yaw(keyframe.T_map_base) - Yaw(T_map_base))) > config_.loop.turn_rad) continue;
+    local_.Insert(keyframe.points_base, keyframe.T_map_base, path_m_);
+    keyframe.in_local_map_m = path_m_;
+    --left;
+  }
+}
+
+VoxelMap Mapper::BuildMap() const {
+  VoxelMapConfig config = config_.local;
+  config.voxel_m = config_.map_voxel_m;
+  VoxelMap map(config);
+  std::vector<PlacedPoints> frames;
+  for (const Keyframe& keyframe : keyframes_) frames.push_back({keyframe.points_base, keyframe.T_map_base});
+  map.InsertAll(frames, 0.0);
+  map.Forget(MovedAway(map.voxels(), keyframes_, footprint_));
+  for (const Keyframe& keyframe : keyframes_)
+    map.Paint(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
+  return map;
+}
+
+}  // namespace merlin
