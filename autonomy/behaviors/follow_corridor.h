@@ -3,6 +3,9 @@
 // At every frame it looks at the walls in the local map (corridor.h) and plans a straight path along the middle line. When
 // the end wall comes near and a side is open, it plans a quarter circle into that side (left before right) and keeps to
 // this plan until the car has turned. In a dead end it keeps its straight path: the pilot stops the car before the wall.
+//
+// The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
+// University of Siegen, about 2011.
 #pragma once
 
 #include <Eigen/Core>

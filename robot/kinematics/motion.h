@@ -2,7 +2,8 @@
 //
 // A path is the signed length that the origin of the base frame (middle of the rear axle) moves, negative backwards.
 // While the steering angle stays, the car moves on a circle; `ArcMotion` is exact on it, not a small step.
-// Source: the car model of the thesis (equations 3.1 to 3.5), with a signed speed.
+// Source: the car model (equations 3.1 to 3.5, here with a signed speed) of the thesis
+// "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination", University of Siegen, about 2011.
 #pragma once
 
 #include <Eigen/Core>

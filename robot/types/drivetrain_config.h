@@ -1,5 +1,8 @@
 // The errors of the twin's drive, as a real car has them. For each field one value switches its error off;
 // IdealDrivetrain() sets all of these.
+//
+// The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
+// University of Siegen, about 2011.
 #pragma once
 
 #include <string>

@@ -1,5 +1,8 @@
 // The steering servo as its electronics drive it: pulses, hold, dead band, play in the linkage. Its slew is the actuator's
 // (sim/drive/drivetrain.h).
+//
+// The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
+// University of Siegen, about 2011.
 #pragma once
 
 #include "robot/types/drivetrain_config.h"

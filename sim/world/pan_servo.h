@@ -1,5 +1,8 @@
 // The servo that turns both cameras about the vertical: a stiff position loop with slew, 0 to 180 deg at its horn and
 // 90 ahead (thesis, section 6's future), which is -90 to 90 deg here. It holds its angle when nothing is sent.
+//
+// The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
+// University of Siegen, about 2011.
 #pragma once
 
 #include <mujoco/mujoco.h>
