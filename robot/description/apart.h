@@ -1,4 +1,4 @@
-// Work in a process of its own, for code that foreign bytes can bring down.
+// Runs work in a child process, so that a parser that crashes on a bad file cannot crash the program.
 #pragma once
 
 #include <functional>

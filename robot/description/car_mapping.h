@@ -10,9 +10,9 @@
 //   wheel_radius_m: 0.1                     # optional, and wheel_width_m: where the wheels' shapes do not say it
 //   drivetrain: {gear: 10, ...}             # as the element <drivetrain> of models/merlin/merlin.urdf
 //
-// A role that the file leaves out has the name of the rule. Where there is a file, and no link of the rule's name, a
-// colour camera or compass that it leaves out is not there. A URDF that follows the rule and has a <drivetrain> needs no
-// file.
+// A role that the file leaves out has its default name, which is the key itself (wheel_front_left_joint, ...). Where
+// there is a file that leaves out the colour camera or the compass, and the URDF has no link of the default name, the
+// car has none. A URDF with default names and a <drivetrain> needs no file.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What urdfdom lets pass or drops without a word, found in the URDF's XML itself.
+// Finds the faults of a URDF that urdfdom accepts or drops without a word, by reading the XML itself.
 #pragma once
 
 #include <set>

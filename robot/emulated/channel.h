@@ -1,4 +1,4 @@
-// What lies between host and device: bytes go in at one end, and come out at the other when they have arrived.
+// The link between host and device, a cable or a radio: bytes go in at one end and come out at the other after a delay.
 #pragma once
 
 #include "robot/protocol/bytes.h"

@@ -1,4 +1,4 @@
-// The newest of what one thread puts, for others that wait for it.
+// A slot that holds the latest item: one thread puts items, others wait for a newer one.
 #pragma once
 
 #include <chrono>

@@ -14,7 +14,8 @@
 namespace merlin {
 
 // A device the robot lacks is a null pointer. The plug that made them owns them and outlives this struct. The stack drives
-// by one camera of each kind; what a robot carries beyond these two is listed apart.
+// by one camera of each kind; what a robot carries beyond these two is listed apart,
+// and not read by the stack yet.
 struct Robot {
   Clock* clock = nullptr;  // never null
   DepthCamera* depth = nullptr;

@@ -1,4 +1,4 @@
-// The room a car takes up, for who keeps it off things or drives where there are none.
+// The ground that a car covers: for obstacle avoidance, and for clearing the map where the car drove.
 #pragma once
 
 #include "robot/types/car.h"

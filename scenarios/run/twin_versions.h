@@ -1,4 +1,4 @@
-// Of the libraries that only the twin links, for result.json.
+// Names and versions of the libraries that only the twin links, for result.json.
 #pragma once
 
 #include <string>

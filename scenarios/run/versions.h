@@ -1,4 +1,4 @@
-// Of this program and the libraries that every build of it links, for result.json.
+// Names and versions of this program and of the libraries that every build of it links, for result.json.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
-// What the sub-rays of a frame meet. All of them are traced at mid-exposure. In a sub-frame camera and bodies are
-// elsewhere: a sub-ray that in the mid-exposure met a plane, and had no edge near, still meets that plane, and its range is
-// one division; only the others are traced again.
+// Finds what each sub-ray of a frame hits. All of them are traced once, at mid-exposure. In the other sub-frames the
+// camera and the bodies have moved slightly: a sub-ray that hit a plane far from any edge still hits the same plane, so
+// that its range is computed directly. Only the rest are traced again.
 #pragma once
 
 #include <array>

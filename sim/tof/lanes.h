@@ -1,5 +1,5 @@
-// Before a loop over arrays that do not overlap: the compiler may do several elements at a time. It cannot see that by
-// itself where there are more arrays than it checks at run time.
+// MERLIN_SIDE_BY_SIDE: put before a loop to tell the compiler that its arrays do not overlap, so that it may vectorise the
+// loop. With many arrays it gives up checking this itself at run time.
 #pragma once
 
 #ifdef __clang__
