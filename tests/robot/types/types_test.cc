@@ -16,6 +16,7 @@
 #include "robot/types/depth_camera_errors.h"
 #include "robot/types/se3.h"
 #include "robot/types/time.h"
+#include "tests/support/thesis_ccd.h"
 
 namespace merlin {
 namespace {
@@ -89,16 +90,6 @@ TEST(Angles, YawOfATiltedPoseIsThatOfItsXAxisFromAbove) {
   }
 }
 
-const CameraModel kCcd{.width = 640,
-                       .height = 480,
-                       .fx_px = 780.037,
-                       .fy_px = 777.844,
-                       .cx_px = 353.244,
-                       .cy_px = 223.784,
-                       .k1 = 0.024,
-                       .k2 = 0.015,
-                       .p1 = -0.006,
-                       .p2 = 0.0109};
 const CameraModel kBarrel{.width = 640,
                           .height = 480,
                           .fx_px = 420.0,
@@ -118,7 +109,7 @@ Eigen::Vector2d OpenCvPixel(const CameraModel& c, double x, double y) {
 }
 
 TEST(CameraModel, ProjectsAsOpenCvsFormula) {
-  for (const CameraModel& camera : {kCcd, kBarrel})
+  for (const CameraModel& camera : {kThesisCcd, kBarrel})
     for (const double x : {-0.4, -1e-9, 0.0, 0.2})
       for (const double y : {-0.25, 0.0, 1e-9, 0.3})
         EXPECT_LT((camera.Project(3.0 * Eigen::Vector3d(x, y, 1.0)) - OpenCvPixel(camera, x, y)).norm(), 1e-9)
@@ -126,7 +117,7 @@ TEST(CameraModel, ProjectsAsOpenCvsFormula) {
 }
 
 TEST(CameraModel, RaysInvertTheDistortionFromTheCentreToTheCorners) {
-  for (const CameraModel& camera : {kCcd, kBarrel}) {
+  for (const CameraModel& camera : {kThesisCcd, kBarrel}) {
     EXPECT_TRUE(camera.IsInvertible());
     for (const double u : {-0.5, 0.0, 200.25, camera.cx_px, 639.0, 639.5})
       for (const double v : {-0.5, 0.0, camera.cy_px, 300.5, 479.0, 479.5}) {
@@ -137,11 +128,11 @@ TEST(CameraModel, RaysInvertTheDistortionFromTheCentreToTheCorners) {
         EXPECT_LT((camera.Project(5.0 * ray) - Eigen::Vector2d(u, v)).norm(), 1e-8) << u << " " << v;
       }
   }
-  EXPECT_EQ(kCcd.Ray(kCcd.cx_px, kCcd.cy_px), Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(kThesisCcd.Ray(kThesisCcd.cx_px, kThesisCcd.cy_px), Eigen::Vector3d::UnitZ());
 }
 
 TEST(CameraModel, WithoutDistortionIsThePinhole) {
-  CameraModel pinhole = kCcd;
+  CameraModel pinhole = kThesisCcd;
   pinhole.k1 = pinhole.k2 = pinhole.p1 = pinhole.p2 = 0.0;
   EXPECT_TRUE(pinhole.IsInvertible());
   const Eigen::Vector3d by_hand((13.0 - 353.244) / 780.037, (400.0 - 223.784) / 777.844, 1.0);

@@ -10,20 +10,11 @@
 #include <vector>
 
 #include "robot/base/error.h"
+#include "tests/support/thesis_ccd.h"
 
 namespace merlin::sim {
 namespace {
 
-const CameraModel kThesisCcd{.width = 640,
-                             .height = 480,
-                             .fx_px = 780.037,
-                             .fy_px = 777.844,
-                             .cx_px = 353.244,
-                             .cy_px = 223.784,
-                             .k1 = 0.024,
-                             .k2 = 0.015,
-                             .p1 = -0.006,
-                             .p2 = 0.0109};
 const CameraModel kBarrel{.width = 640,
                           .height = 480,
                           .fx_px = 500.0,

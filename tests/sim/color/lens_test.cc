@@ -8,19 +8,11 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/support/thesis_ccd.h"
+
 namespace merlin::sim {
 namespace {
 
-const CameraModel kTableCcd{.width = 640,
-                            .height = 480,
-                            .fx_px = 780.037,
-                            .fy_px = 777.844,
-                            .cx_px = 353.244,
-                            .cy_px = 223.784,
-                            .k1 = 0.024,
-                            .k2 = 0.015,
-                            .p1 = -0.006,
-                            .p2 = 0.0109};
 const CameraModel kOddBarrel{.width = 161,
                              .height = 90,
                              .fx_px = 110.0,
@@ -61,7 +53,7 @@ double Pattern(const CameraModel& c, const Slope& s, int channel) {
 }
 
 TEST(Lens, GivesEachPixelWhatLiesAlongItsOwnRay) {
-  for (const CameraModel& camera : {kTableCcd, kOddBarrel}) {
+  for (const CameraModel& camera : {kThesisCcd, kOddBarrel}) {
     const Lens lens(camera);
     const CameraModel& wide = lens.pinhole();
     EXPECT_FALSE(wide.Distorts());
@@ -100,18 +92,18 @@ TEST(Lens, WithoutDistortionIsNotThere) {
 }
 
 TEST(Lens, KeepsTheDensityOfPixelsAndAsksForNoMoreThanItNeeds) {
-  const Lens lens(kTableCcd);
-  EXPECT_EQ(lens.pinhole().fx_px, kTableCcd.fx_px);
-  EXPECT_EQ(lens.pinhole().fy_px, kTableCcd.fy_px);
+  const Lens lens(kThesisCcd);
+  EXPECT_EQ(lens.pinhole().fx_px, kThesisCcd.fx_px);
+  EXPECT_EQ(lens.pinhole().fy_px, kThesisCcd.fy_px);
   Slope least{1e9, 1e9}, most{-1e9, -1e9};
-  for (int v = 0; v < kTableCcd.height; ++v)
-    for (int u = 0; u < kTableCcd.width; ++u) {
-      const Slope s = SlopeOfPixel(kTableCcd, u, v);
+  for (int v = 0; v < kThesisCcd.height; ++v)
+    for (int u = 0; u < kThesisCcd.width; ++u) {
+      const Slope s = SlopeOfPixel(kThesisCcd, u, v);
       least = {std::min(least.x, s.x), std::min(least.y, s.y)};
       most = {std::max(most.x, s.x), std::max(most.y, s.y)};
     }
-  EXPECT_NEAR(lens.pinhole().width, kTableCcd.fx_px * (most.x - least.x) + 1.0, 2.0);
-  EXPECT_NEAR(lens.pinhole().height, kTableCcd.fy_px * (most.y - least.y) + 1.0, 2.0);
+  EXPECT_NEAR(lens.pinhole().width, kThesisCcd.fx_px * (most.x - least.x) + 1.0, 2.0);
+  EXPECT_NEAR(lens.pinhole().height, kThesisCcd.fy_px * (most.y - least.y) + 1.0, 2.0);
 }
 
 }  // namespace
