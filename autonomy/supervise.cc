@@ -45,9 +45,10 @@ Health HealthOf(const SupervisedDevice& device, Time now) {
   return device.status.health == Health::kOk ? Health::kSilent : device.status.health;
 }
 
-std::string Outage::Sentence() const {
-  const std::string end = until == Time::max() ? " on" : " to " + Tenths(until);
-  return "the " + device + " was " + Word(health) + " from " + Tenths(from) + end + ", and the run went on without it";
+std::string Outage::Sentence(Time began) const {
+  const std::string end = until == Time::max() ? " on" : " to " + Tenths(until - began);
+  return "the " + device + " was " + Word(health) + " from " + Tenths(from - began) + end +
+         ", and the run went on without it";
 }
 
 void Supervisor::Watch(Time now, std::span<const SupervisedDevice> devices) {

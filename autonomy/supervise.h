@@ -40,8 +40,8 @@ struct Outage {
   Time from{0};                 // when the device was last well
   Time until = Time::max();     // when it was back; max: it is still out
 
-  // "the compass was silent from 4.2 s to 6.0 s, and the run went on without it"
-  std::string Sentence() const;
+  // "the compass was silent from 4.2 s to 6.0 s, and the run went on without it": counted from when the run began.
+  std::string Sentence(Time began = Time(0)) const;
 };
 
 class Supervisor {

@@ -155,6 +155,7 @@ void DriveLoop::Halt(FirstFault& faults) {
 }
 
 LoopEnd DriveLoop::Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const ManualInput& manual) {
+  state_.began = robot_.clock->Now();
   ears_.emplace(robot_);
   for (Time tick = robot_.clock->Now() + period_; robot_.clock->WaitUntil(tick); tick += period_) {
     Tick(manual);

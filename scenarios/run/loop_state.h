@@ -21,6 +21,7 @@ namespace merlin {
 
 struct LoopState {
   Time now{0};
+  Time began{0};  // when the loop began: on a real car the clock runs before, while the car is checked
 
   // What arrived in this tick, in order of stamps.
   struct Heard {

@@ -31,7 +31,7 @@ class Pacer {
   Pacer(const RunOptions& options, const std::atomic<bool>& stop) : options_(options), stop_(stop) {}
   void Tick(const LoopState& state) {
     while (options_.pace > 0.0 && !stop_.load()) {
-      const double ahead_s = Seconds(state.now) / options_.pace - SecondsSince(begin_);
+      const double ahead_s = Seconds(state.now - state.began) / options_.pace - SecondsSince(begin_);
       if (ahead_s <= 0.0) break;
       std::this_thread::sleep_for(std::chrono::duration<double>(std::min(ahead_s, 0.05)));  // Ctrl-C must not wait
     }

@@ -87,7 +87,7 @@ class Session {
     Conclude(ending, report);
     report.gl_name = plug_.renderer();
     std::vector<std::string> notes = plug_.notes();
-    for (const Outage& outage : loop_.state().outages) notes.push_back(outage.Sentence());
+    for (const Outage& outage : loop_.state().outages) notes.push_back(outage.Sentence(loop_.state().began));
     report.note = Joined(notes);
     return report;
   }

@@ -101,6 +101,8 @@ TEST(Supervise, NotesEachOutageOnceWithItsEnd) {
             "the compass was silent from 10.0 s to 12.0 s, and the run went on without it");
   EXPECT_EQ(supervisor.outages()[1].Sentence(),
             "the compass was silent from 13.0 s on, and the run went on without it");
+  EXPECT_EQ(supervisor.outages()[1].Sentence(std::chrono::milliseconds(2500)),
+            "the compass was silent from 10.5 s on, and the run went on without it");
 }
 
 TEST(Supervise, NamesTheFirstOfSeveralDevicesThatStopTheCarAndLetsItGoOnceTheyAreBack) {

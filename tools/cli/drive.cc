@@ -84,8 +84,9 @@ class StatusLine {
                                                                : " EMPTY";
     const std::string doing = driver_ == Driver::kAutonomy ? ": " + Doing(state) : "";
     line_.Show(fmt::format("{:7.1f} s  {:5.2f} m/s  steering {:+5.1f} deg  battery {:5.2f} V{}  {}{}",
-                           Seconds(state.now), state.speed_m_s, state.drive.steering_rad * 180.0 / std::numbers::pi,
-                           state.drive.battery_v, battery, Name(driver_), doing));
+                           Seconds(state.now - state.began), state.speed_m_s,
+                           state.drive.steering_rad * 180.0 / std::numbers::pi, state.drive.battery_v, battery,
+                           Name(driver_), doing));
   }
   ~StatusLine() { line_.Keep(); }
 

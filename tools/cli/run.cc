@@ -45,7 +45,7 @@ class Progress {
  public:
   explicit Progress(double duration_s) : duration_s_(duration_s) {}
   void Show(const LoopState& state) {
-    const double now_s = Seconds(state.now);
+    const double now_s = Seconds(state.now - state.began);
     if (!line_.on_terminal() && now_s < next_s_) return;
     next_s_ = now_s + 10.0;
     line_.Show(fmt::format("{:6.1f} s of {:.0f} s, {:6.2f} m: {}", now_s, duration_s_, state.path_m, Doing(state)));
