@@ -59,7 +59,7 @@ class Backing : public ::testing::Test {
     options.world.car = sim::Merlin();
     options.depth.sheet =
         ReadDepthCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/pmd_3k_s.yaml");
-    options.compass.emplace();
+    options.compass = TwinOptions::Compass{};
     options.end = FromSeconds(seconds);
     options.threads = 1;
     Twin twin(options);

@@ -23,7 +23,7 @@ class EmulatedPreflight : public ::testing::Test {
     options_.world.car = sim::Merlin();
     options_.depth.sheet =
         ReadDepthCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/pmd_3k_s.yaml");
-    options_.compass.emplace();
+    options_.compass = TwinOptions::Compass{};
     options_.end = Time::max();
   }
   // Switches the car on and asks for what the check says: at rest, and moving if that found nothing.

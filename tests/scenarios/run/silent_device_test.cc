@@ -28,7 +28,7 @@ class SilentDevice : public ::testing::Test {
     options.world.car = sim::Merlin();
     options.depth.sheet =
         ReadDepthCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/pmd_3k_s.yaml");
-    options.compass.emplace();
+    options.compass = TwinOptions::Compass{};
     options.end = std::chrono::seconds(10);
     options.threads = 1;
     twin_.emplace(options);
