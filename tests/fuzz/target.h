@@ -1,4 +1,4 @@
-// What a fuzz target is: libFuzzer's function, seeds for the driver without libFuzzer, and a check that ends the
+// What a fuzz target is: libFuzzer's function, the seeds that every driver begins with, and a check that ends the
 // program.
 #pragma once
 

@@ -1,0 +1,26 @@
+// Gives libFuzzer the target's seeds to begin with. Without them it would first have to find out what a well-formed
+// input looks like, and would spend its minute on headers that no decoder reads beyond.
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/fuzz/target.h"
+
+// Called by libFuzzer before it reads its arguments. Writes the seeds into the folder "<program>-corpus", made anew, and
+// adds that folder to the arguments: libFuzzer begins with the files of the folders that it is given.
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  static std::string folder = std::filesystem::absolute((*argv)[0]).string() + "-corpus";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  const std::vector<merlin::Bytes> seeds = merlin::fuzz::Seeds();
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    std::ofstream file(std::filesystem::path(folder) / std::to_string(i), std::ios::binary);
+    file.write(reinterpret_cast<const char*>(seeds[i].data()), static_cast<std::streamsize>(seeds[i].size()));
+  }
+  static std::vector<char*> arguments(*argv, *argv + *argc);
+  arguments.push_back(folder.data());
+  arguments.push_back(nullptr);
+  *argc = static_cast<int>(arguments.size()) - 1;
+  *argv = arguments.data();
+  return 0;
+}
