@@ -52,7 +52,7 @@ struct Checker {
 
 }  // namespace detail
 
-// Every field outside its rule, all at once; empty: the config is valid.
+// All fields that break their rule. Empty: the config is valid.
 template <class Config>
 std::vector<Fault> Validate(Config config) {
   detail::Checker checker;

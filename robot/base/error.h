@@ -17,7 +17,7 @@ class InputError : public std::runtime_error {
                            (got.empty() ? "" : ", got " + got)) {}
 };
 
-// The input is right, but this machine cannot: no GL, no device, disk full. Programs exit with 3.
+// The input is right, but this machine cannot do what it asks for: no GL, no device, disk full. Programs exit with 3.
 class MachineError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -10,11 +10,11 @@ namespace merlin {
 
 class FaultList {
  public:
-  // name: the file's, for the line that counts what is not shown; empty where the faults name it. shown: the most
-  // lines.
+  // name: the file's name, for the last line, which counts the faults not shown; empty if each fault names the file
+  // itself. shown: the largest number of faults shown.
   explicit FaultList(std::string name = {}, std::size_t shown = 12) : name_(std::move(name)), shown_(shown) {}
 
-  // Runs a step of reading, and notes the InputError that it throws. Returns whether there was none.
+  // Runs one step of reading and keeps the InputError that it throws. Returns true if it threw none.
   template <class Step>
   bool Try(Step step) {
     try {

@@ -48,7 +48,7 @@ void WriteFile(const std::filesystem::path& file, std::string_view bytes) {
     }
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::close(descriptor) != 0) FailToWrite(file, part, errno);  // a network disk may say only now that it is full
+  if (::close(descriptor) != 0) FailToWrite(file, part, errno);  // a network disk may report only here that it is full
   if (::rename(part.c_str(), file.c_str()) != 0) FailToWrite(file, part, errno);
 }
 

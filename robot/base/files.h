@@ -7,7 +7,8 @@
 
 namespace merlin {
 
-// Throws InputError for a file that cannot be read, or that goes on beyond 1 GB (a device); what: "a pose graph (g2o)".
+// Throws InputError for a file that cannot be read or is longer than 1 GB (a device never ends); what: "a pose graph
+// (g2o)".
 std::string ReadFile(const std::filesystem::path& file, const std::string& what);
 
 // Writes the file whole or not at all: into "<file>.part" first, then renamed. Throws MachineError (disk full, no

@@ -8,7 +8,7 @@ namespace merlin {
 
 class FirstFault {
  public:
-  // Calls action. False: it threw; what it threw, of whatever type, is kept if it is the first.
+  // Calls action. Returns false if it threw. The first exception, of any type, is kept.
   template <class Action>
   bool Try(const Action& action) {
     try {

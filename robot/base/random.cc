@@ -34,7 +34,7 @@ std::array<std::uint32_t, 4> Philox4x32(std::array<std::uint32_t, 4> counter, st
 #ifdef __AVX2__
 namespace {
 
-// Of eight 32-bit products, the low and the high words.
+// The low and the high words of eight products of 32-bit numbers.
 struct Products {
   __m256i low, high;
 };

@@ -11,7 +11,8 @@ namespace merlin {
 // The block function itself, as Random123 defines it.
 std::array<std::uint32_t, 4> Philox4x32(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
-// Eight blocks at once, of counter and the seven that follow it in counter[1]; [word][block]. Several times as fast.
+// Eight blocks at once: for this counter and for the seven that follow it in counter[1]. Indexed [word][block]. Several
+// times as fast as eight calls of Philox4x32.
 using PhiloxOctet = std::array<std::array<std::uint32_t, 8>, 4>;
 PhiloxOctet Philox4x32Octet(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
@@ -23,7 +24,7 @@ class Random {
   Random(std::uint64_t seed, Sensor sensor, std::uint64_t frame, std::uint32_t pixel = 0, std::uint16_t purpose = 0);
   double Uniform();  // (0, 1), in steps of 2^-32
   double Normal();   // mean 0, sigma 1
-  // The next two normal numbers are these, drawn elsewhere: first, then second.
+  // Makes the next two calls of Normal return these numbers, which were drawn elsewhere: first, then second.
   void Give(float first, float second) { normals_ = {second, first}, ready_ = 2; }
   double Poisson(double mean);  // mean >= 0; a Gaussian of the same variance above 50
 
@@ -33,7 +34,7 @@ class Random {
   std::array<std::uint32_t, 2> key_;
   std::array<std::uint32_t, 4> block_{};
   int used_ = 4;
-  std::array<double, 2> normals_{};  // drawn and not yet given out: the last of ready_ comes next
+  std::array<double, 2> normals_{};  // drawn and not yet returned; normals_[ready_ - 1] is next
   int ready_ = 0;
 };
 

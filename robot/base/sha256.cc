@@ -10,11 +10,11 @@
 namespace merlin {
 namespace {
 
-// The hashed numbers are those in memory. A big-endian machine would have to turn each round.
+// Numbers are hashed as they lie in memory. A big-endian machine would have to reverse the bytes of each.
 static_assert(std::endian::native == std::endian::little);
 
 void Require(bool done) {
-  if (!done) throw MachineError("SHA-256: OpenSSL refused it");
+  if (!done) throw MachineError("OpenSSL cannot compute SHA-256");
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ void Sha256::AddLittleEndian(std::span<const std::byte> bytes) {
 }
 
 std::string Sha256::Hex() const {
-  Context copy;  // ending the digest ends its context
+  Context copy;  // a context cannot be used after its digest is finished
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned int size = 0;
   Require(EVP_MD_CTX_copy_ex(copy.evp, context_->evp) == 1 && EVP_DigestFinal_ex(copy.evp, digest.data(), &size) == 1);

@@ -1,4 +1,4 @@
-// SHA-256 of data that come piece by piece.
+// SHA-256 of data that arrive in pieces.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ class Sha256 {
   Sha256& operator=(Sha256&&) noexcept;
 
   void Add(std::string_view bytes);
-  // Numbers as their bytes, little-endian.
+  // Adds the bytes of numbers, little-endian.
   template <class Number>
   requires std::is_arithmetic_v<Number>
   void Add(std::span<const Number> numbers) { AddLittleEndian(std::as_bytes(numbers)); }
@@ -27,7 +27,7 @@ class Sha256 {
   requires std::is_arithmetic_v<Number>
   void Add(Number number) { Add(std::span<const Number>(&number, 1)); }
 
-  // 64 hexadecimal digits, lower case, of all added so far; more may be added afterwards.
+  // The hash of all bytes added so far: 64 hexadecimal digits, lower case. More may be added afterwards.
   std::string Hex() const;
 
  private:

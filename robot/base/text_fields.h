@@ -1,4 +1,5 @@
-// A line of a text file as fields between blanks, checked as they are read: what every reader of such a file shares.
+// Splits a line of a text file into fields at blanks, and checks each field as it is read. Every reader of such files
+// uses it.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +17,8 @@ constexpr std::string_view WithoutByteOrderMark(std::string_view text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
-// Calls each(line, number) for every line of a text, numbers from 1 on; neither "\n" nor "\r\n" belongs to the line,
-// nor a byte-order mark to the first.
+// Calls each(line, number) for every line of a text. Numbers start at 1. Line ends ("\n" or "\r\n") and a byte-order
+// mark at the start of the text are removed.
 template <class Each>
 void ForEachLine(std::string_view text, Each each) {
   text = WithoutByteOrderMark(text);
@@ -30,30 +31,32 @@ void ForEachLine(std::string_view text, Each each) {
   }
 }
 
-// A field for an error message: quoted, cut where it is long, without control characters or bytes that are not ASCII.
+// A field for an error message: in quotes, shortened if it is long, without control characters and bytes that are not
+// ASCII.
 std::string Quoted(std::string_view field);
 
 // A number for a message, with up to six digits: "0.25", "1e+07".
 std::string NumberText(double number);
 
-// "line 4", "lines 4, 7, 9", for a warning; the first dozen where there are more.
+// "line 4", "lines 4, 7, 9", for a warning. Names at most the first dozen.
 std::string LinesOf(const std::vector<std::size_t>& lines);
 
 class TextFields {
  public:
-  // file and line: for the errors. The line must outlive this.
+  // file and number: named in errors. The line must outlive this object.
   TextFields(std::string_view line, std::string_view file, std::size_t number)
       : rest_(line), file_(file), number_(number) {}
 
   // The next field; empty at the line's end.
   std::string_view Word();
 
-  // The next field as a finite number of at most that size, or as a whole number. Throws InputError; what: its name.
+  // The next field as a finite number of at most that magnitude, or as a whole number. Throws InputError. what: the
+  // field's name.
   double Number(std::string_view what, double size_max);
   std::int64_t Whole(std::string_view what);
 
   bool AtEnd() const;
-  void RequireEnd(std::string_view what);  // throws InputError; what: the whole line's
+  void RequireEnd(std::string_view what);  // throws InputError if fields are left; what: the line's name
 
   std::string where() const { return std::string(file_) + ":" + std::to_string(number_); }
 

@@ -1,4 +1,4 @@
-// Text as bytes of UTF-8 (RFC 3629), one character at a time. It may come from anywhere: a file's name need not be valid.
+// Text as bytes of UTF-8 (RFC 3629), one character at a time. It need not be valid: a file's name may hold any bytes.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@ namespace merlin {
 
 struct Utf8Character {
   char32_t code = U'\uFFFD';  // U+FFFD, the replacement character, for bytes that are no UTF-8
-  std::size_t bytes = 0;      // that it takes, 1 to 4; of an invalid one as many as could have begun a character
+  std::size_t bytes = 0;      // its length, 1 to 4; of invalid text as many bytes as could have begun a character
   bool valid = false;
 };
 

@@ -1,4 +1,4 @@
-// One thread that does jobs in order. Without a thread it does each at once, on the caller's.
+// One thread that runs jobs in order. Without a thread of its own it runs each job at once, on the caller's thread.
 #pragma once
 
 #include <condition_variable>
@@ -29,7 +29,7 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // What the job returns or throws comes out of the future.
+  // The future gives what the job returns or throws.
   template <class Job>
   auto Do(Job job) -> std::future<decltype(job())> {
     auto task = std::make_shared<std::packaged_task<decltype(job())()>>(std::move(job));

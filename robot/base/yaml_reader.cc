@@ -10,11 +10,11 @@
 namespace merlin {
 namespace {
 
-constexpr std::size_t kShown = 100;  // more than any of our files has keys: only what is no such file has more faults
+constexpr std::size_t kShown = 100;  // more than any of our files has keys: a file with more faults is of another kind
 
 std::string Line(const YAML::Mark& mark) { return mark.is_null() ? "" : ":" + std::to_string(mark.line + 1); }
 
-// A tree of the whole text; where says from where it comes.
+// Parses the whole text. where: its source, for errors.
 YAML::Node ParseYaml(const std::string& text, const std::string& where, const std::string& what) {
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
@@ -62,7 +62,7 @@ void YamlFile::Set(const std::string& assignment) {
 std::string YamlFile::Where(const YAML::Node& node, const std::string& field) const {
   for (const std::string& set : sets_)
     if (field == set || field.starts_with(set + ".") || field.starts_with(set + "[")) return "--set";
-  // A key without a value is where its key is: the parser places the empty value at what comes next.
+  // An empty value is reported in the line of its key: the parser places it at the token that follows.
   return file_ + Line(node.IsNull() ? Find(field).mark : node.Mark());
 }
 

@@ -46,15 +46,15 @@ class YamlFile {
   // that holds no map of keys.
   YamlFile(const std::filesystem::path& file, const std::string& what);
 
-  // "a.b=c" over the file: c is YAML itself, so numbers, texts and lists work alike. Throws InputError for a text that
-  // is no assignment. Faults in what was set are the option's: they name --set instead of the file.
+  // Applies "a.b=c" to the tree. c is YAML, so numbers, texts and lists work alike. Throws InputError for a text that
+  // is not an assignment. Faults in a value that was set here name --set instead of the file.
   void Set(const std::string& assignment);
   bool IsSet(const std::string& field) const { return sets_.contains(field); }
 
   template <class Config>
   void ReadInto(Config& config);
 
-  // For the rules that a kind of file has of its own.
+  // For rules that only one kind of file has.
   void Require(const std::string& map_field, std::initializer_list<const char*> keys);
   void Fault(const std::string& field, const std::string& what);
   void Fault(const YAML::Node& node, const std::string& field, const std::string& what);
@@ -66,14 +66,14 @@ class YamlFile {
   const YAML::Node& root() const { return root_; }
   // "FILE:LINE", or "--set".
   std::string Where(const YAML::Node& node, const std::string& field) const;
-  // What a map holds, each key once; faults for what is no map, for a key that is no name and for one given twice. A
-  // node without a value (`errors:`) is an empty map.
+  // The entries of a map, each key once. Notes a fault for a node that is not a map, a key that is not a name, and a
+  // key given twice. A node without a value (`errors:`) is an empty map.
   std::vector<YamlEntry> Entries(const YAML::Node& node, const std::string& field);
 
  private:
   struct Place {
     YAML::Node node;
-    YAML::Mark mark;    // of its key, or its own in a list
+    YAML::Mark mark;    // of its key; in a list, of the node itself
     bool found = true;  // false: there is no such field; this is the nearest around it
   };
   Place Find(const std::string& field) const;
@@ -88,7 +88,7 @@ class YamlFile {
 // One map of the file, and the visitor that fills a config from it. A value that is wrong leaves its variable as it
 // was.
 //
-// A type that is read in its own way brings, beside it,
+// A type with a format of its own defines, beside it,
 //   void ReadYaml(YamlReader& reader, const YAML::Node& node, const std::string& field, T& value);
 class YamlReader {
  public:
@@ -117,17 +117,17 @@ class YamlReader {
     (*this)(key, value, range);
   }
   double Number(const char* key, Range range) {
-    double number = 1.0;  // so that what is computed from a missing one stays finite
+    double number = 1.0;  // not 0, so that what is computed from a missing number stays finite
     Need(key, number, range);
     return number;
   }
   // Null: the file does not give it.
   const YamlEntry* Find(const std::string& key) const;
 
-  // A rule between the values of these keys, asked only where each of them is right on its own. The fault is that of
-  // the first.
+  // A rule between the values of several keys. It is checked only if each value is valid by itself. The fault is
+  // reported at the first key.
   void Rule(bool holds, std::initializer_list<const char*> keys, const std::string& what);
-  // Call last: every key that nobody asked for is a fault.
+  // Call last: every key that was not read is a fault.
   void RefuseUnknown();
 
   template <class Config>
@@ -152,7 +152,7 @@ class YamlReader {
   std::string Field(const std::string& key) const { return field_.empty() ? key : field_ + "." + key; }
   void Missing(const char* key);
   void Expected(const YAML::Node& node, const std::string& field, const std::string& what);
-  // False, with its fault, for a number that is not finite or not in the range.
+  // Notes a fault and returns false for a number that is not finite or outside the range.
   bool IsIn(Range range, double number, const YAML::Node& node, const std::string& field);
 
   YamlFile& file_;
@@ -217,7 +217,7 @@ void YamlReader::ReadScalar(const YAML::Node& node, const std::string& field, T&
   } else if constexpr (std::is_same_v<T, bool>) {
     if (!node.IsScalar() || !YAML::convert<bool>::decode(node, read)) return Expected(node, field, "true or false");
   } else if constexpr (std::is_integral_v<T>) {
-    // As it is typed: yaml-cpp takes 010 for eight.
+    // Decimal, as typed: yaml-cpp would read 010 as eight.
     const std::string text = node.IsScalar() ? node.Scalar() : "";
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
     if (error != std::errc() || end != text.data() + text.size() || text.empty())

@@ -1,5 +1,5 @@
 // Writes a config (robot/base/config.h) as YAML, every default included: reading it back gives the same config. A type
-// that is written in its own way brings WriteYaml(YAML::Emitter&, T&) beside it.
+// with a format of its own defines WriteYaml(YAML::Emitter&, T&) beside it.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -46,7 +46,7 @@ class YamlWriter {
   YAML::Emitter& out_;
 };
 
-// digits: of every number; 17 keep all its bits.
+// digits: significant digits of every number; 17 keep all bits.
 template <class Config>
 std::string ToYamlText(Config config, int digits) {
   YAML::Emitter out;

@@ -19,8 +19,8 @@ class ColorCamera {
  public:
   virtual ~ColorCamera() = default;
   virtual const ColorCameraInfo& Info() const = 0;
-  // Holds from the next exposure on; with auto_exposure the camera starts anew from these. Throws InputError for settings
-  // outside the sheet's.
+  // Applies from the next exposure on; with auto_exposure the camera starts anew from these. Throws InputError for
+  // settings outside the sheet's.
   virtual void Configure(const ColorSettings& settings) = 0;
   // The oldest frame not yet handed out, if any; each once, in order of stamps.
   virtual std::optional<ColorFrame> Poll() = 0;

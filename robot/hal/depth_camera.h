@@ -19,7 +19,7 @@ class DepthCamera {
  public:
   virtual ~DepthCamera() = default;
   virtual const DepthCameraInfo& Info() const = 0;
-  // Holds from the next exposure on. Throws InputError for settings outside the sheet's.
+  // Applies from the next exposure on. Throws InputError for settings outside the sheet's.
   virtual void Configure(const DepthSettings& settings) = 0;
   // The oldest frame not yet handed out, if any; each once, in order of stamps.
   virtual std::optional<DepthFrame> Poll() = 0;

@@ -5,7 +5,7 @@
 //   driver   Put(measurement)                     Take()      all that has come
 //   twin     Put(measurement, ready, now)         Take(now)   what is ready by now: its latency is over
 //
-// Its owner locks, where two threads share it.
+// It has no lock. An owner that shares it between threads must lock it.
 #pragma once
 
 #include <cstddef>
@@ -22,13 +22,13 @@ namespace merlin {
 template <class Measurement>
 class MeasurementQueue {
  public:
-  // places: how many that are ready are kept.
+  // places: the number of ready measurements that are kept.
   explicit MeasurementQueue(std::size_t places = 16) : places_(places) {}
 
   // Puts come in order of stamps, and ready in order, too.
   void Put(Measurement measurement, Time ready, Time now) {
     waiting_.push_back({ready, std::move(measurement)});
-    // What is still on its way takes no place: a reader can miss only what it could have taken.
+    // A measurement that is not ready yet takes no place: a reader misses only what it could have taken.
     while (waiting_.size() > places_ && waiting_[places_].ready <= now) {
       waiting_.pop_front();
       ++missed_;

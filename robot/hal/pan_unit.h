@@ -12,7 +12,8 @@ namespace merlin {
 class PanUnit {
  public:
   virtual ~PanUnit() = default;
-  // Where it is to go, at its own speed; clamped to its range. Holds without end; not finite: ignored.
+  // Turns to this angle, clamped to its range, at its own speed. The command does not expire. An angle that is not
+  // finite is ignored.
   virtual void Send(double angle_rad) = 0;
   // The oldest state not yet handed out, if any; each once, in order of stamps.
   virtual std::optional<PanState> Poll() = 0;

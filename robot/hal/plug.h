@@ -28,15 +28,15 @@ class Plug {
   // Valid as long as the plug.
   virtual Robot robot() = 0;
 
-  // A depth frame of this stamp was delivered: the truth of that instant is kept.
+  // Called when a depth frame of this stamp was delivered: keeps the truth of that instant.
   virtual void Keep(Time /*stamp*/) {}
-  // Asked at every tick. Why the run must end now, one sentence, such as a car that lies on its side; empty: it goes on.
-  // Throws what broke the world.
+  // Called at every tick. Returns in one sentence why the run must end now, for instance because the car lies on its
+  // side; empty: the run goes on. Throws the error that stopped the world, if any.
   virtual std::string ReasonToEnd() { return ""; }
   // What is wrong now with each device that is not well, one sentence each.
   virtual std::vector<std::string> Complaints() const { return {}; }
 
-  // Asked once, when the loop is over; a world that runs by the clock stands still from then on. Empty: not known.
+  // Called once, when the loop is over. A world that follows the clock stops here. Empty: the truth is not known.
   virtual std::optional<GroundTruth> Truth() { return std::nullopt; }
 
   // For the report: what the user should know, one sentence each; what draws the colour pictures (empty: nothing does);

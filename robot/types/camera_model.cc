@@ -22,8 +22,8 @@ Eigen::Matrix2d Jacobian(const CameraModel& camera, const Eigen::Vector2d& xy) {
   return J;
 }
 
-// Newton's method, its step halved until it comes nearer without crossing a fold (determinant 0). From the axis outwards
-// this stays in the field around the axis.
+// Newton's method. Each step is halved until it comes nearer without crossing a fold (determinant 0). Started at the
+// axis and moved outwards, the solution therefore stays in the field around the axis.
 Eigen::Vector2d Invert(const CameraModel& camera, const Eigen::Vector2d& wanted, Eigen::Vector2d xy) {
   const Eigen::Vector2d none = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   Eigen::Vector2d missing = wanted - camera.Distort(xy);
@@ -62,8 +62,8 @@ Eigen::Vector2d CameraModel::ProjectDistorted(const Eigen::Vector2d& xy) const {
   return {fx_px * distorted.x() + cx_px, fy_px * distorted.y() + cy_px};
 }
 
-// The inverse is followed from the axis to points all along the picture's edge. Where it goes on smoothly on every such
-// way, no two directions share a place (the ways cover the picture).
+// Follows the inverse along straight lines from the axis to points all along the picture's edge. If it is smooth on
+// each of them, no two directions share a place, because the lines cover the picture.
 bool CameraModel::IsInvertible() const {
   if (!Distorts()) return true;
   constexpr int kPointsPerEdge = 32, kSteps = 64;

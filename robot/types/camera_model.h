@@ -17,14 +17,14 @@ struct CameraModel {
 
   bool Distorts() const { return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0; }
 
-  // Where the lens puts the direction (x / z, y / z), on the same plane z = 1 (D. C. Brown, "Decentering distortion of
-  // lenses", 1966, as OpenCV's calib3d writes it).
+  // The place on the plane z = 1 where the lens puts the direction (x / z, y / z) (D. C. Brown, "Decentering distortion
+  // of lenses", 1966, as OpenCV's calib3d writes it).
   Eigen::Vector2d Distort(const Eigen::Vector2d& xy) const;
-  // The direction the lens puts there; its inverse to 1e-12. Of several directions the one that belongs to the field
-  // around the axis; NaN where the lens puts none of that field.
+  // The inverse of Distort, to 1e-12: the direction that the lens puts at this place. If there are several, the one in
+  // the field around the axis; NaN if none of them is.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& distorted_xy) const;
-  // Whether every place of the picture, its pixels' outer edges included, belongs to one direction. A lens model may
-  // fold over: beyond some angle it maps back into the picture.
+  // Whether every place of the picture, up to the outer edges of its pixels, belongs to exactly one direction. A lens
+  // model may fold over: beyond some angle it maps back into the picture.
   bool IsInvertible() const;
 
   // Unit vector of pixel (u, v) in the optical frame. NaN where the lens model folds over.

@@ -1,4 +1,4 @@
-// The car as plain data, as its URDF describes it. The twin builds a body from it; the stack takes its frames.
+// The car as plain data, as its URDF describes it. The twin builds a body from it; the stack uses its frames.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ namespace merlin {
 // Triangles of one colour, out of a mesh file; in metres, z up.
 struct CarMesh {
   std::vector<Eigen::Vector3f> vertices;
-  std::vector<Eigen::Vector3i> triangles;    // three places in vertices each, counter-clockwise from outside
+  std::vector<Eigen::Vector3i> triangles;    // three indices into vertices each, counter-clockwise seen from outside
   std::optional<std::array<float, 4>> rgba;  // none: the file gives no colour
 };
 
@@ -72,7 +72,7 @@ struct CarWheel {
   double width_m = 0.0;                 // of the tyre
 };
 
-// What turns both cameras about the vertical, where a car has it.
+// The pan unit, which turns both cameras about the vertical.
 struct CarPan {
   std::size_t link = 0;                // its index in links; the cameras hang below it
   Pose T_base_pan = Pose::Identity();  // at angle 0, z up along the axis
@@ -108,11 +108,12 @@ struct CarDescription {
   std::optional<Pose> T_base_color;      // none: the car has no colour camera
   std::optional<Pose> T_base_compass;    // none: it has no compass
 
-  // Of a turntable the car stands on: through the base's origin, so that a turn moves no true pose from its place. (On a
-  // small circle the judge would take the noise of the path for a turn of the map.)
+  // The axis of a turntable under the car. It goes through the origin of the base frame, so that turning does not
+  // change the car's true position. (If the origin moved on a small circle, the judge would mistake noise of the path
+  // for a rotation of the map.)
   Pose T_base_turntable() const { return Pose::Identity(); }
 
-  double MetresPerCount() const {  // of the four-wheel mean's path
+  double MetresPerCount() const {  // of the mean path of the four wheels
     return 2.0 * std::numbers::pi * wheel_radius_m / (drivetrain.gear * drivetrain.encoder_counts_per_motor_turn);
   }
 };

@@ -19,7 +19,7 @@ constexpr double kSpeedOfLight_m_s = 299792458.0;
 // Bits of DepthFrame::flags, as the PMD SDK has them (pmdGetFlags).
 enum DepthFlag : std::uint8_t {
   kInvalid = 1,       // no return
-  kSaturated = 2,     // a tap clipped: the range is there, and wrong
+  kSaturated = 2,     // a tap clipped: there is a range, but it is wrong
   kInconsistent = 4,  // the four phase images disagree (motion)
   kLowSignal = 8,     // amplitude below the sheet's threshold
   kSbiActive = 16,    // background suppression worked

@@ -21,14 +21,14 @@ struct DepthCameraErrors {
   double dark_e_per_us = 0.05;   // (g) both taps
 
   // Suppression of background illumination (Schmidt and Jaehne, LNCS 5742, 2009).
-  double sbi_onset = 0.5;  // (g) works from this filling of the emptier tap on, in full wells
-  double sbi_max = 50.0;   // (g) takes away at most this, in full wells
+  double sbi_onset = 0.5;  // (g) starts once the emptier tap holds this much, in full wells
+  double sbi_max = 50.0;   // (g) the most it takes away, in full wells
   double sbi_noise = 1.5;  // (g) variance it adds to a tap, per electron taken away
 
   // Ambient light.
   double lamp_w_per_sr = 2.0;      // (g) radiant intensity on the axis, both boards, mean over the modulation
   double filter_nm = 60.0;         // (g) width of the band filter
-  double ambient_bias_m = 0.0075;  // (g) range error at a full well of ambient electrons: the taps are not twins
+  double ambient_bias_m = 0.0075;  // (g) range error at a full well of ambient electrons: the two taps differ
 
   // Intensity-related error: what response and scatter do not explain (Lindner and Kolb, SPIE 6764, 2007).
   double intensity_bias_m =

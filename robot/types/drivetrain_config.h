@@ -13,7 +13,7 @@ namespace merlin {
 
 // Ten nickel-metal-hydride cells: their voltage falls with the charge, and with the current.
 struct BatteryConfig {
-  bool always_nominal = false;   // a laboratory supply instead: the car's nominal voltage whatever is drawn, for ever
+  bool always_nominal = false;   // true: a laboratory supply that always gives the car's nominal voltage
   double capacity_ah = 3.3;      // [0.001, 1000] C-size cells; guess
   double charge = 1.0;           // [0, 1] share of the capacity at the start
   double resistance_ohm = 0.08;  // [0, 10] of ten cells and their leads: sags by this times the current; guess
@@ -72,7 +72,7 @@ void Visit(Visitor& v, DrivetrainConfig& c) {
   v("battery", c.battery);
 }
 
-// A drive without a fault, as no car has: for tests of what it moves.
+// A drive without errors, which no real car has: for tests of everything but the drive.
 inline DrivetrainConfig IdealDrivetrain() {
   DrivetrainConfig ideal{.ideal = true};
   ideal.speed_loop_s = ideal.pwm_steps = ideal.gear_backlash_rad = 0.0;

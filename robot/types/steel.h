@@ -1,11 +1,12 @@
-// What bends the field that a compass reads.
+// Steel in the building bends the magnetic field that a compass reads.
 #pragma once
 
 #include "robot/base/config.h"
 
 namespace merlin {
 
-// Steel in a wall or floor: it turns the field around it, most right at it, by exp(-1/2 (distance / reach)^2).
+// A piece of steel in a wall or floor. It turns the heading by bend_rad right at it, and by bend_rad exp(-1/2 (distance
+// / reach)^2) farther away.
 struct Steel {
   double x_m = 0.0, y_m = 0.0;  // in the room's frame
   double reach_m = 1.0;         // [0.05, 100]
