@@ -20,7 +20,7 @@ void Put(Bytes& bytes, T value) {
   for (std::size_t i = sizeof(T); i-- > 0;) bytes.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
 }
 
-// Takes numbers off the front. The caller has checked that there are enough bytes.
+// Reads numbers from the front. The caller must have checked that there are enough bytes.
 class ByteReader {
  public:
   explicit ByteReader(BytesView bytes) : bytes_(bytes) {}

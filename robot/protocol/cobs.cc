@@ -11,7 +11,7 @@ constexpr std::uint8_t kFullBlock = 0xFF;  // 254 bytes and no zero behind them
 
 Bytes CobsEncode(BytesView bytes) {
   Bytes stuffed{1};
-  std::size_t code = 0;  // where the block's length stands: counted up as the block grows
+  std::size_t code = 0;  // index of the block's length, which is counted up as the block grows
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     if (bytes[i] != 0) {
       stuffed.push_back(bytes[i]);

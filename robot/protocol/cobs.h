@@ -10,7 +10,7 @@ namespace merlin {
 
 Bytes CobsEncode(BytesView bytes);
 
-// None: no encoder gives these bytes (a zero among them, or a block longer than what is there).
+// Empty if no encoder gives these bytes: they hold a zero, or a block is longer than the rest of them.
 std::optional<Bytes> CobsDecode(BytesView stuffed);
 
 }  // namespace merlin

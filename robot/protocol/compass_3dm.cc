@@ -12,7 +12,7 @@ namespace {
 constexpr double kRadPerCount = 2.0 * std::numbers::pi / 65536.0;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kThesisDegPerCount = 0.0055;
-constexpr std::size_t kKeep_bytes = 64;  // of what comes instead of a reply
+constexpr std::size_t kKeep_bytes = 64;  // of bytes that arrive instead of a reply
 
 double Signed_rad(std::uint16_t counts) { return static_cast<std::int16_t>(counts) * kRadPerCount; }
 
@@ -25,7 +25,7 @@ Attitude ThesisAttitude(const Counts& counts) {
   const auto deg = [](std::uint16_t c) { return kThesisDegPerCount * c; };
   return {.roll_rad = kRadPerDeg * (counts.roll >= 49151 ? deg(counts.roll) - 361.0 : deg(counts.roll)),
           .pitch_rad = kRadPerDeg * (counts.pitch >= 32768 ? 360.0 - deg(counts.pitch) : -deg(counts.pitch)),
-          .heading_rad = kRadPerDeg * deg(counts.yaw)};  // there: 360 deg less the yaw
+          .heading_rad = kRadPerDeg * deg(counts.yaw)};  // the thesis' yaw is 360 deg minus this
 }
 
 std::uint8_t Sum(BytesView bytes) { return static_cast<std::uint8_t>(std::accumulate(bytes.begin(), bytes.end(), 0u)); }

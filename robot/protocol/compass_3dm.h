@@ -42,7 +42,7 @@ std::optional<Counts> DecodeReply(BytesView reply, bool with_checksum);
 struct PollerConfig {
   double period_s = 0.08;  // from poll to poll, [0.0775, 10]; 12.5 Hz: below it the reply does not fit in
   bool with_checksum = false;
-  double patience_s = 0.03;  // that a reply may come late, [0, 1]; then the poll has failed (guess)
+  double patience_s = 0.03;  // how late a reply may be, [0, 1], before the poll has failed (guess)
 };
 
 template <class Visitor>
@@ -80,7 +80,7 @@ class Poller {
 
   PollerConfig config_;
   Phase phase_ = Phase::kIdle;
-  Time started_{0};  // this poll; in kIdle: when the next will
+  Time started_{0};  // start of this poll; in kIdle, of the next
   Time asked_{0};
   Bytes received_;
   std::optional<Reading> reading_;

@@ -51,7 +51,7 @@ void FrameDecoder::Close(std::vector<Frame>& frames) {
   chunk_.clear();
   const bool too_long = std::exchange(too_long_, false);
   if (chunk.empty()) return;
-  counters_.garbage_bytes += chunk.size();  // until proven good
+  counters_.garbage_bytes += chunk.size();  // taken back below if a good frame is found
   const std::optional<Bytes> plain = too_long ? std::nullopt : CobsDecode(chunk);
   if (!plain || plain->size() < kHead_bytes + kCrc_bytes) return;
   const BytesView covered = BytesView(*plain).first(plain->size() - kCrc_bytes);

@@ -28,7 +28,7 @@ Bytes EncodeFrame(const Frame& frame);
 
 struct LinkCounters {
   std::uint64_t frames = 0;         // good ones
-  std::uint64_t garbage_bytes = 0;  // thrown away, those of the frames below among them
+  std::uint64_t garbage_bytes = 0;  // discarded, those of the bad frames counted below included
   std::uint64_t bad_crc = 0;        // frames
   std::uint64_t other_version = 0;  // frames
   std::uint64_t bad_payload = 0;    // frames of an unknown type, or whose payload does not fit it
@@ -36,8 +36,8 @@ struct LinkCounters {
   std::uint64_t repeated = 0;       // frames with the number of the one before; they are handed out all the same
 };
 
-// Feed it whatever arrives, in pieces of any size. It keeps no more than one frame, and what it reads after a zero does
-// not depend on what came before it.
+// Feed it all bytes that arrive, in pieces of any size. It keeps no more than one frame, and what it reads after a zero
+// does not depend on what came before it.
 class FrameDecoder {
  public:
   std::vector<Frame> Feed(BytesView bytes);

@@ -12,11 +12,11 @@ namespace merlin {
 
 class LeastDelay {
  public:
-  // sent_ms: the sender's clock, wrapping at 2^32 (49.7 days). The mark may rise by kDrift, so that a sender whose
-  // clock runs slow does not seem ever later. Below 1 ms is the sender's rounding.
+  // sent_ms: the sender's clock, wrapping at 2^32 (49.7 days). The reference delay slowly rises (1 part in 5000), so
+  // that a sender whose clock runs slow does not seem later and later. Less than 1 ms is rounding by the sender.
   Duration Lateness(std::uint32_t sent_ms, Time now);
 
-  // Sent before the newest so far: an old message, or a sender that started anew.
+  // Whether it was sent before the newest message so far: an old message, or a sender that has restarted.
   bool IsOld(std::uint32_t sent_ms) const;
 
   void Reset() { mark_.reset(); }

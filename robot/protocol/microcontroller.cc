@@ -117,7 +117,7 @@ bool IsPrintable(BytesView text) {
   return std::all_of(text.begin(), text.end(), [](std::uint8_t c) { return c >= ' ' && c <= '~'; });
 }
 
-// None: the payload does not fit the type, or the type is not of this direction.
+// Leaves message empty if the payload does not fit the type, or the type belongs to the other direction.
 void Read(const Frame& frame, std::optional<ToMicro>& message) {
   const BytesView payload = frame.payload;
   if (frame.type == kHello && payload.empty()) message = Hello{};

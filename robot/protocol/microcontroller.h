@@ -25,8 +25,9 @@ struct Hello {
   bool operator==(const Hello&) const = default;
 };
 
-// Beyond the wire's range (2147 m/s, 3.2767 rad, 65.535 s) it is clamped: the car's limits are far within, and who
-// means longer sends again. A number that is not finite, and a valid_for below 1 ms, encode as "expire now": all zero.
+// Values beyond the wire's range (2147 m/s, 3.2767 rad, 65.535 s) are clamped: the car's limits lie far within it, and
+// a command that must hold longer is sent again. A number that is not finite, or a valid_for below 1 ms, is encoded as
+// "expire now": all zero.
 struct Command {
   std::uint32_t host_time_ms = 0;
   double speed_m_s = 0.0;

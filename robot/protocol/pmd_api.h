@@ -12,7 +12,7 @@ extern "C" {
 
 using PmdHandle = unsigned int;  // of an open camera; 0: none
 
-constexpr int kPmdOk = 0;  // what every call returns but for an error
+constexpr int kPmdOk = 0;  // what every call returns if there was no error
 
 // Which valid value a pmdGetValid... call looks for.
 enum PmdProximity { kPmdCloseTo = 0, kPmdAtLeast = 1, kPmdAtMost = 2 };
