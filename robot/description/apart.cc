@@ -18,7 +18,8 @@ void LimitChild() {
   const rlimit no_core{0, 0}, cpu{kApartCpuMax_s, kApartCpuMax_s};
   setrlimit(RLIMIT_CORE, &no_core);
   setrlimit(RLIMIT_CPU, &cpu);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they map much more than that for themselves
+// Sanitizers map much more than that for themselves.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   const rlimit memory{kApartMemoryMax_bytes, kApartMemoryMax_bytes};
   setrlimit(RLIMIT_DATA, &memory);
 #endif

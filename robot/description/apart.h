@@ -15,8 +15,8 @@ constexpr unsigned kApartCpuMax_s = 5;
 constexpr unsigned long kApartMemoryMax_bytes =
     1ul << 30;  // allocating more throws std::bad_alloc there; not under sanitizers
 
-// Runs the work in a forked child that prints nothing and leaves no trace but the bytes it returns; the work must not
-// throw. Throws MachineError if no process can be made.
+// Runs the work in a forked child process. The child prints nothing and leaves nothing behind but the bytes that the
+// work returns. The work must not throw. Throws MachineError if no process can be started.
 ApartResult RunApart(const std::function<std::string()>& work);
 
 }  // namespace merlin

@@ -11,8 +11,8 @@
 namespace merlin {
 namespace {
 
-constexpr double kSymmetric_m = 1e-4;  // an axle that is off symmetry by less is symmetric ...
-constexpr double kLopsided_m = 5e-3;   // ... by this or more is none; between them its mean counts
+constexpr double kSymmetric_m = 1e-4;  // an axle less asymmetric than this counts as symmetric
+constexpr double kLopsided_m = 5e-3;   // one more asymmetric is refused; in between, the mean is used
 
 double FrontOff_m(const Middles& base) { return OffSymmetry_m(base[0], base[1]); }
 double RearOff_m(const Middles& base) { return OffSymmetry_m(base[2], base[3]); }
@@ -21,7 +21,7 @@ Middles Transformed(const Pose& T, const Middles& middles) {
   return {T * middles[0], T * middles[1], T * middles[2], T * middles[3]};
 }
 
-// The base on the ground below the rear axle's middle, y along `left`, x on to the front axle.
+// The base frame: on the ground below the rear axle's middle, y along `left`, x towards the front axle.
 Pose BaseAlong(const Eigen::Vector3d& left, const Middles& root, double radius_m) {
   const Eigen::Vector3d rear = 0.5 * (root[2] + root[3]), front = 0.5 * (root[0] + root[1]);
   const Eigen::Vector3d ahead = (front - rear - left * left.dot(front - rear)).normalized();
@@ -41,7 +41,7 @@ double OffSymmetry_m(const Eigen::Vector3d& left_base, const Eigen::Vector3d& ri
   return (left_base.cwiseProduct(Eigen::Vector3d(1, -1, 1)) - right_base).norm();
 }
 
-bool IsLopsided(double off_m) { return !(off_m < kLopsided_m - 1e-9); }  // files round
+bool IsLopsided(double off_m) { return !(off_m < kLopsided_m - 1e-9); }  // numbers in files are rounded
 
 std::string MostOffText() { return fmt::format("less than {:g} mm off symmetry", 1e3 * kLopsided_m); }
 
@@ -51,8 +51,9 @@ void Asymmetry::Add(const std::string& what, double off_m) {
 
 void Asymmetry::Warn(const UrdfSource& source, CarDescription& car) const {
   if (!text_.empty())
-    car.warnings.push_back(fmt::format("{}: left and right are not symmetric: {}; their means count (up to {:g} mm)",
-                                       source.path.string(), text_, 1e3 * kLopsided_m));
+    car.warnings.push_back(
+        fmt::format("{}: left and right are not symmetric: {}; the means of both sides are used (up to {:g} mm)",
+                    source.path.string(), text_, 1e3 * kLopsided_m));
 }
 
 Pose BaseInRoot(const UrdfSource& source, const Middles& root, double radius_m) {
@@ -60,7 +61,7 @@ Pose BaseInRoot(const UrdfSource& source, const Middles& root, double radius_m) 
   const Eigen::Vector3d ahead = root[0] + root[1] - root[2] - root[3], left = rear_axle.normalized();
   if (!(rear_axle.norm() > kSameLength_m && front_axle.norm() > kSameLength_m &&
         (ahead - left * left.dot(ahead)).norm() > 2.0 * kSameLength_m))
-    throw InputError(source.path.string(), "the wheels stand in one another", "two axles, one before the other");
+    throw InputError(source.path.string(), "the wheels overlap", "two axles, one before the other");
   const auto off_m = [&root](const Pose& T_root_base) {
     const Middles base = Transformed(T_root_base.inverse(), root);
     return std::max(FrontOff_m(base), RearOff_m(base));

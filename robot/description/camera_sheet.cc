@@ -16,7 +16,7 @@
 namespace merlin {
 namespace {
 
-// Keys that only one kind of camera has: they tell the kind.
+// Keys that only one kind of camera has. They show which kind a sheet describes.
 constexpr std::string_view kDepthKeys[] = {"fov_horizontal_deg", "fov_vertical_deg",    "signal_e_m2_per_us",
                                            "contrast_at_20mhz",  "contrast_corner_mhz", "low_signal_amplitude_e",
                                            "integration_min_us", "integration_max_us",  "frequencies_mhz"};

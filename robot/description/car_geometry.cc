@@ -18,7 +18,7 @@
 namespace merlin {
 namespace {
 
-// One role for each joint, and each joint able to play it.
+// Finds the joint of each role. A joint may have one role only, and must be of the right type for it.
 void FindRoles(const UrdfSource& source, const CarMapping& mapping, LinkTree& tree, CarDescription& car) {
   std::set<std::string> taken;
   const auto find = [&](const RoleName& role, CarLink::Joint kind, const char* must, const char* expected) {
@@ -56,14 +56,14 @@ void PutBaseAboveRoot(const Pose& T_base_root, CarDescription& car) {
   if (car.pan) ++car.pan->link;
 }
 
-// What moves as one piece, the body, a knuckle or a wheel, needs a mass somewhere.
+// Every rigid piece (the body, a knuckle, a wheel) needs a mass in at least one of its links.
 void RefuseMassless(const UrdfSource& source, LinkTree& tree, const CarDescription& car) {
   std::set<std::size_t> heads{0, car.knuckles[0], car.knuckles[1]};
   for (const CarWheel& wheel : car.wheels) heads.insert(wheel.link);
   FaultList faults;
   for (const std::size_t head : heads) {
     double mass_kg = 0.0;
-    std::size_t named = head;  // the first that is seen or touches
+    std::size_t named = head;  // the first one with a shape
     for (std::size_t i = car.links.size(); i-- > head;) {
       if (tree.HeadOf(i, heads) != head) continue;
       mass_kg += car.links[i].mass_kg;
@@ -79,7 +79,8 @@ void RefuseMassless(const UrdfSource& source, LinkTree& tree, const CarDescripti
   faults.ThrowIfAny();
 }
 
-// A camera's optical frame in the link that its role names: x right, y down, z ahead in x ahead, y left, z up.
+// The optical frame of a camera (x right, y down, z ahead) in the link that its role names. That link either is the
+// optical frame, or has x ahead, y left, z up.
 Pose OpticalIn(const RoleName& camera) {
   Pose T_link_optical = Pose::Identity();
   if (!camera.role.ends_with("_optical_frame")) T_link_optical.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -121,7 +122,7 @@ void DeriveGeometry(const UrdfSource& source, const CarMapping& mapping, CarDesc
   DeriveSteering(source, tree, T_base_root, car, asymmetry);
   asymmetry.Warn(source, car);
   const auto frame = [&](const RoleName& role) { return T_base_root * tree.T_root(tree.LinkOf(role)); };
-  // A mapping that says nothing of it leaves a sensor out.
+  // A mapping file that does not name a sensor means a car without it.
   const auto left_out = [&](const RoleName& role) { return mapping.has_file && role.where.empty() && !tree.Has(role); };
   car.T_base_depth = frame(mapping.depth_camera) * OpticalIn(mapping.depth_camera);
   if (!left_out(mapping.color_camera)) car.T_base_color = frame(mapping.color_camera) * OpticalIn(mapping.color_camera);

@@ -1,4 +1,4 @@
-// What the car's links and its <drivetrain> element say about how it drives and where its sensors are.
+// Derives from the car's links and its <drivetrain> element how the car drives and where its sensors are.
 #pragma once
 
 #include "robot/description/car_mapping.h"
@@ -7,9 +7,10 @@
 
 namespace merlin {
 
-// Fills in the roles and what car.links imply of them: base, wheelbase, tracks, wheel radius, steering limit, sensor
-// frames. The base follows from the wheels; where the URDF's root is elsewhere, a link for it is put above the root.
-// Throws InputError for a missing joint or frame, one that cannot play its role, and for wheels that make no car.
+// Fills in the roles and what follows from car.links: base, wheelbase, tracks, wheel radius, steering limit, sensor
+// frames. The base follows from the wheels; if the URDF's root is elsewhere, a link for the base is added above the
+// root. Throws InputError for a missing joint or frame, for one that is unfit for its role, and for wheels that are not
+// those of a car.
 void DeriveGeometry(const UrdfSource& source, const CarMapping& mapping, CarDescription& car);
 
 // Throws InputError for a missing, not positive or not finite attribute, with its line.

@@ -1,4 +1,5 @@
-// How a URDF names what makes it a car. A URDF of others brings a small YAML file beside it, <its stem>.mapping.yaml:
+// Which joints and links of a URDF play which part of a car. A URDF with names of its own needs a small YAML file
+// beside it, <its stem>.mapping.yaml:
 //
 //   wheel_front_left_joint: axle_fl         # the role's name: the joint's name there; the four driven wheels ...
 //   steer_front_left_joint: kingpin_l       # ... and what steers the two front ones
@@ -10,9 +11,9 @@
 //   wheel_radius_m: 0.1                     # optional, and wheel_width_m: where the wheels' shapes do not say it
 //   drivetrain: {gear: 10, ...}             # as the element <drivetrain> of models/merlin/merlin.urdf
 //
-// A role that the file leaves out has its default name, which is the key itself (wheel_front_left_joint, ...). Where
-// there is a file that leaves out the colour camera or the compass, and the URDF has no link of the default name, the
-// car has none. A URDF with default names and a <drivetrain> needs no file.
+// A role that the file leaves out has its default name, which is the key itself (wheel_front_left_joint, ...). If the
+// file leaves out the colour camera or the compass, and the URDF has no link of the default name, then the car has
+// none. A URDF with default names and a <drivetrain> needs no file.
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@
 
 namespace merlin {
 
-// A name in the URDF, and the line of the mapping that chose it; empty if the name is the rule's.
+// A name in the URDF, and the line of the mapping file that gives it; empty for the default name.
 struct RoleName {
   std::string role;
   std::string name;
@@ -50,8 +51,9 @@ struct CarMapping {
 
 std::filesystem::path MappingFile(const std::filesystem::path& urdf);
 
-// The rule where there is no such file. Throws InputError with file and line of each fault: not YAML, a key that is
-// unknown (names the nearest) or given twice, a value that is no name or no positive number.
+// Reads the mapping beside this URDF; all defaults if there is none. Throws InputError with file and line of each
+// fault: not YAML, a key that is unknown (names the nearest) or given twice, a value that is not a name or not a
+// positive number.
 CarMapping ReadMapping(const std::filesystem::path& urdf);
 
 }  // namespace merlin

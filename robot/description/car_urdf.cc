@@ -21,7 +21,7 @@ namespace merlin {
 namespace {
 
 constexpr double kInertiaRounding = 1e-4;  // relative, that files with few digits need
-constexpr double kMassMin = 1e-14;         // kg, and kg m2: MuJoCo takes less for nothing
+constexpr double kMassMin = 1e-14;         // kg, and kg m2: MuJoCo treats less as zero
 
 Pose ToPose(const urdf::Pose& pose) {
   const auto& [x, y, z, w] = pose.rotation;
@@ -43,7 +43,7 @@ bool IsFlat(const CarMesh& mesh) {
   return !(moments[0] > 1e-12 * moments[2]);
 }
 
-// A mesh's scale may be negative along an axis: mirrored.
+// The scale of a mesh may be negative along an axis, which mirrors it.
 CarShape ToShape(const UrdfSource& source, const std::string& link, const urdf::Geometry* geometry,
                  const urdf::Pose& origin) {
   CarShape shape;
@@ -74,8 +74,8 @@ CarShape ToShape(const UrdfSource& source, const std::string& link, const urdf::
   return shape;
 }
 
-// A body's principal moments are positive and none exceeds the sum of the other two. Where they do so by rounding, as
-// those of thin plates, the largest is taken down to that sum: MuJoCo allows for none.
+// The principal moments of a body are positive, and none exceeds the sum of the other two. Rounding can break this for
+// thin plates. The largest is then lowered to that sum, because MuJoCo accepts no excess.
 Eigen::Matrix3d BalancedInertia(const UrdfSource& source, const std::string& link, const Eigen::Matrix3d& inertia) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
   Eigen::Vector3d moments = solver.eigenvalues();
@@ -134,7 +134,8 @@ void ReadJoint(const UrdfSource& source, const urdf::Joint& joint, CarLink& link
   link.axis.normalize();
 }
 
-// The mesh as its mirror image where an odd number of axes is turned round, with its surfaces still facing out.
+// The mesh with its axes multiplied by these signs. An odd number of negative signs mirrors it; the corners of each
+// triangle are then swapped, so that surfaces still face outwards.
 CarMesh Mirrored(CarMesh mesh, const Eigen::Vector3f& signs) {
   for (Eigen::Vector3f& vertex : mesh.vertices) vertex = vertex.cwiseProduct(signs);
   if (signs.prod() < 0.0f)
@@ -142,14 +143,15 @@ CarMesh Mirrored(CarMesh mesh, const Eigen::Vector3f& signs) {
   return mesh;
 }
 
-// What is in each mesh file, mirrored as a shape wants it; wheels share theirs.
+// Reads each mesh file once for each way of mirroring it. Wheels share their mesh.
 class MeshFiles {
  public:
   using Parts = std::vector<std::shared_ptr<const CarMesh>>;
 
   explicit MeshFiles(const FaultList& faults) : faults_(faults) {}
 
-  // Takes the signs out of the shape's scale. Empty once there are faults: no car comes of them.
+  // The parts for this shape, mirrored by the signs of its scale; the scale itself becomes positive. Empty once there
+  // are faults, because no car is built then.
   const Parts& Of(CarShape& shape) {
     static const Parts kNone;
     if (!faults_.empty()) return kNone;
@@ -174,7 +176,7 @@ class MeshFiles {
   std::map<Key, Parts> parts_;
 };
 
-// A mesh of several colours is as many shapes; a material in the URDF paints them all.
+// A mesh of several colours becomes one shape for each colour. A material in the URDF overrides all of them.
 void AddVisual(const UrdfSource& source, const urdf::Visual& visual, MeshFiles& meshes, CarLink& link) {
   CarShape shape = ToShape(source, link.name, visual.geometry.get(), visual.origin);
   shape.material = visual.material_name;
@@ -190,7 +192,7 @@ void AddVisual(const UrdfSource& source, const urdf::Visual& visual, MeshFiles& 
   }
 }
 
-// What touches is a mesh's convex hull: it must have a volume.
+// Contact uses the convex hull of a mesh, so the mesh must enclose a volume.
 void AddCollision(const UrdfSource& source, const urdf::Collision& collision, MeshFiles& meshes, CarLink& link) {
   CarShape shape = ToShape(source, link.name, collision.geometry.get(), collision.origin);
   if (shape.kind == CarShape::Kind::kMesh) {
@@ -228,7 +230,7 @@ void AppendTree(const UrdfSource& source, const urdf::Link& link, MeshFiles& mes
   for (const auto& child : children) AppendTree(source, *child, meshes, faults, links);
 }
 
-// The model, or null where faults say already why there is none.
+// The model; null if the faults already say why there is none.
 urdf::ModelInterfaceSharedPtr ParseUnless(const UrdfFaults& faults, const UrdfSource& source) {
   try {
     return ParseUrdf(source);

@@ -1,4 +1,4 @@
-// The links of a URDF as a tree, and which of them plays a role of the mapping.
+// The links of a URDF as a tree, and the links that play the roles of the mapping.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ class LinkTree {
   const Pose& T_root(std::size_t index) const { return T_root_link_[index]; }
   Eigen::Vector3d AxisInRoot(std::size_t index) const { return T_root_link_[index].linear() * links_[index].axis; }
   bool IsBelow(std::size_t index, std::size_t ancestor) const;
-  // The nearest of these links that it hangs on, or that it is.
+  // The nearest of these links above a link, or the link itself if it is one of them.
   std::size_t HeadOf(std::size_t index, const std::set<std::size_t>& heads) const;
 
   bool Has(const RoleName& frame) const;

@@ -29,7 +29,7 @@ std::string Ending(const std::filesystem::path& file) {
 void RefuseByLooks(const std::filesystem::path& file) {
   const std::string ending = Ending(file);
   if (ending != ".obj" && ending != ".stl" && ending != ".dae" && ending != ".gltf" && ending != ".glb")
-    throw InputError(file.string(), "no mesh that is understood", "a file .obj, .stl, .dae, .gltf or .glb");
+    throw InputError(file.string(), "not a mesh format that can be read", "a file .obj, .stl, .dae, .gltf or .glb");
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error) throw InputError(file.string(), "cannot be read", "a mesh");
@@ -58,7 +58,8 @@ Eigen::Affine3d ToAffine(const aiMatrix4x4& m) {
   return result;
 }
 
-// Vertices that no triangle names would count for a hull: single points, and what a count that lies made assimp read.
+// Removes vertices that no triangle uses; they would enlarge the convex hull. Some are stray points, others are garbage
+// that assimp reads if the file gives a wrong count.
 CarMesh WithoutLooseVertices(const CarMesh& mesh) {
   std::vector<int> number(mesh.vertices.size(), -1);
   for (const Eigen::Vector3i& corners : mesh.triangles)
@@ -104,7 +105,7 @@ class Collector {
       if (!vertex.allFinite()) throw InputError(file_, "a vertex is not finite");
       to.vertices.push_back(vertex.cast<float>());
     }
-    const bool mirrored = T_file_node.linear().determinant() < 0.0;  // keeps the outside outside
+    const bool mirrored = T_file_node.linear().determinant() < 0.0;  // then corners swap: surfaces keep facing outwards
     for (unsigned i = 0; i < from.mNumFaces; ++i) {
       const aiFace& face = from.mFaces[i];
       if (face.mNumIndices != 3) continue;
@@ -142,7 +143,7 @@ class Collector {
 std::vector<CarMesh> ReadHere(const std::filesystem::path& file) {
   Assimp::Importer importer;
   const aiScene& scene = Import(file, importer);
-  // assimp brings a COLLADA file to y up by its root's transform, whatever the file's own axis; glTF is y up.
+  // assimp turns every COLLADA file to y up by the transform of its root, whatever the file's own axis; glTF is y up.
   Eigen::Affine3d T_z_up_file = Eigen::Affine3d::Identity();
   const std::string ending = Ending(file);
   if (ending != ".obj" && ending != ".stl") T_z_up_file.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
@@ -153,7 +154,7 @@ std::vector<CarMesh> ReadHere(const std::filesystem::path& file) {
   return parts;
 }
 
-// Between the two processes: counts and arrays as they lie in memory.
+// The format between the two processes: counts and arrays as they lie in memory.
 constexpr char kMeshMark = '\1';
 
 template <class T>

@@ -48,7 +48,7 @@ std::vector<fs::path> FoldersIn(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (std::error_code unreadable; entry->is_directory(unreadable)) folders.push_back(entry->path());
-  std::ranges::sort(folders);  // the system gives them in any order
+  std::ranges::sort(folders);  // the system lists them in no fixed order
   return folders;
 }
 
@@ -59,7 +59,7 @@ void FindPackage(const fs::path& folder, const std::string& package, int levels,
   for (const fs::path& below : FoldersIn(folder)) FindPackage(below, package, levels - 1, found);
 }
 
-// The folders that an environment variable lists, apart by colons.
+// The folders that an environment variable lists, separated by colons.
 std::vector<fs::path> Listed(const char* variable) {
   std::vector<fs::path> folders;
   const char* value = std::getenv(variable);
@@ -80,7 +80,7 @@ std::vector<fs::path> UpwardsFrom(fs::path folder) {
   return folders;
 }
 
-// Visits the folders that may be the package's, until one has the file.
+// Visits the folders that may belong to the package, until one of them has the file.
 class Search {
  public:
   Search(const MeshName& name, std::vector<std::string>& tried) : name_(name), tried_(tried) {}

@@ -13,16 +13,17 @@
 namespace merlin {
 namespace {
 
-constexpr double kTrailMax = 0.02;           // of the wheelbase: a wheel's middle before or behind its steering axis
+// In wheelbases: how far a wheel's middle may be before or behind its steering axis.
+constexpr double kTrailMax = 0.02;
 constexpr std::array kSides = {+1.0, -1.0};  // left, right
 
-// Ackermann's law, the other way: the middle angle at which the wheel of that side stands at its own.
+// The inverse of Ackermann's law: the angle of the virtual middle wheel at which the wheel of that side has this angle.
 double MiddleAngle_rad(const CarDescription& car, double wheel_rad, double side) {
   const double tangent = std::tan(wheel_rad);
   return std::atan2(tangent, 1.0 + 0.5 * side * car.steering_track_m / car.wheelbase_m * tangent);
 }
 
-// The same joint, counted the other way.
+// Reverses the sign of the joint's angle.
 void TurnRound(CarLink& link) {
   link.axis = -link.axis;
   std::swap(link.joint_min_rad, link.joint_max_rad);

@@ -1,4 +1,5 @@
-// The joints that turn about an upright axis: the knuckles that steer the front wheels, and what turns the cameras.
+// The joints that turn about an upright axis: the knuckles that steer the front wheels, and the pan unit of the
+// cameras.
 #pragma once
 
 #include "robot/description/axles.h"
@@ -8,8 +9,8 @@
 
 namespace merlin {
 
-// What steers is revolute; the mapping may give the limits that a continuous joint has not, or narrower ones. Throws
-// InputError for a joint without limits.
+// A steering joint must be revolute. For a continuous joint, which has no limits, the mapping gives them; for a
+// revolute one it may narrow them. Throws InputError for a joint without limits.
 void LimitKnuckle(const UrdfSource& source, const CarMapping& mapping, CarLink& link);
 
 // The track and the largest angle of the steering, as its limits allow. Needs the wheelbase and the wheels' radius.
@@ -17,8 +18,8 @@ void LimitKnuckle(const UrdfSource& source, const CarMapping& mapping, CarLink& 
 void DeriveSteering(const UrdfSource& source, LinkTree& tree, const Pose& T_base_root, CarDescription& car,
                     Asymmetry& asymmetry);
 
-// The axis of the joint that turns the cameras, where the car has one: upright, positive to the left. Its link hangs on
-// the base. Throws InputError for a joint that cannot.
+// Finds the joint that turns the cameras, if the car has one. Its axis is upright, its angle positive to the left, and
+// its link hangs on the base. Throws InputError for a joint that is unfit.
 void DerivePan(const UrdfSource& source, const CarMapping& mapping, LinkTree& tree, const Pose& T_base_root,
                CarDescription& car);
 

@@ -31,8 +31,8 @@ Tyre MeshTyre(const CarShape& shape, const Eigen::Vector3d& axis) {
   return {AtAxle(0.5 * (nearest_m + farthest_m) * axis, axis), radius_m, farthest_m - nearest_m};
 }
 
-// What the largest round thing among the shapes says. A cylinder must lie along the axle; a ball is round about all,
-// and a mesh is taken for round.
+// The tyre as the largest round shape gives it. A cylinder must lie along the axle. A sphere is round about every axis,
+// and a mesh is assumed to be round.
 std::optional<Tyre> RoundTyre(const std::vector<CarShape>& shapes, const Eigen::Vector3d& axis) {
   std::optional<Tyre> largest;
   for (const CarShape& shape : shapes) {
@@ -48,7 +48,8 @@ std::optional<Tyre> RoundTyre(const std::vector<CarShape>& shapes, const Eigen::
   return largest;
 }
 
-// By the shapes that touch, else by those that are seen; what the mapping says goes before both.
+// From the collision shapes, or from the visual ones if no collision shape is round. Values of the mapping override
+// both.
 Tyre FindTyre(const UrdfSource& source, const CarMapping& mapping, const CarLink& link) {
   std::optional<Tyre> tyre = RoundTyre(link.collision, link.axis);
   if (!tyre) tyre = RoundTyre(link.visual, link.axis);

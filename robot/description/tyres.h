@@ -14,7 +14,8 @@ namespace merlin {
 Pose AtAxle(const Eigen::Vector3d& middle, const Eigen::Vector3d& axis);
 
 // Sets the wheels' tyres and their radius; returns their middles in the root's frame. Throws InputError for a tyre
-// whose size nothing says, for one of another radius than the first, and for one that is not on its joint's axis.
+// whose size is not given anywhere, whose radius differs from the first one's, or whose middle is not on its joint's
+// axis.
 Middles DeriveTyres(const UrdfSource& source, const CarMapping& mapping, LinkTree& tree, CarDescription& car);
 
 }  // namespace merlin

@@ -13,7 +13,7 @@
 namespace merlin {
 namespace {
 
-constexpr std::size_t kLinesNamed = 12;  // of xacro's left-overs
+constexpr std::size_t kLinesNamed = 12;  // of left-overs of xacro
 
 std::string TextOf(const TiXmlElement& element, const char* attribute) {
   const char* text = element.Attribute(attribute);
@@ -152,7 +152,7 @@ class Check {
       const auto known = std::ranges::find(UrdfShapes(), e->ValueStr(), &UrdfElement::name);
       if (known == UrdfShapes().end()) {
         if (!e->ValueStr().starts_with("xacro:"))
-          Fault(*e, fmt::format("<{}> in a <{}> is no shape that is understood", e->Value(), in), kShapeNames);
+          Fault(*e, fmt::format("<{}> in a <{}> is not a shape of URDF", e->Value(), in), kShapeNames);
       } else if (e != shape) {
         Fault(*e, fmt::format("a second shape in one <geometry>: <{}>", e->Value()),
               fmt::format("a <{}> for each", in));
@@ -162,7 +162,7 @@ class Check {
     }
   }
 
-  // An element that bears shapes is no extension, wherever it stands.
+  // An element that can hold shapes is never an extension. Where URDF does not expect it, it is a fault.
   void RefuseMisplaced(const TiXmlElement& child, const UrdfElement& parent) {
     static const std::set<std::string> kBearers{"link", "joint",    "visual", "collision", "geometry",
                                                 "box",  "cylinder", "sphere", "mesh"};
@@ -201,7 +201,7 @@ class Check {
 
   void Type(const TiXmlElement& joint) {
     const std::string type = TextOf(joint, "type");
-    if (type.empty() || IsXacro(type)) return;  // said already
+    if (type.empty() || IsXacro(type)) return;  // reported already
     if (type != "fixed" && type != "revolute" && type != "continuous" && type != "prismatic")
       return Fault(joint, "type", "fixed, revolute, continuous or prismatic: the car is one piece",
                    fmt::format("'{}'", type));
@@ -229,7 +229,7 @@ class Check {
 
   const UrdfSource& source_;
   UrdfFaults& faults_;
-  std::string owner_;       // the link, joint or material in hand
+  std::string owner_;       // the link, joint or material being checked
   std::string owner_text_;  // ... as a sentence begins
 };
 

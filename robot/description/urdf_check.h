@@ -1,4 +1,4 @@
-// Finds the faults of a URDF that urdfdom accepts or drops without a word, by reading the XML itself.
+// Finds the faults of a URDF that urdfdom accepts or skips without an error, by reading the XML itself.
 #pragma once
 
 #include <set>
@@ -11,7 +11,8 @@ namespace merlin {
 
 struct UrdfFaults {
   FaultList list;
-  std::set<std::string> parts;  // names of the links and joints that have one: what urdfdom makes of them is no news
+  // Names of the links and joints with a fault: further errors of urdfdom about them are not reported.
+  std::set<std::string> parts;
 };
 
 // Adds a fault, with its line and the link or joint, for
@@ -22,8 +23,8 @@ struct UrdfFaults {
 // - joints of a type that a car cannot have, without limits, or between links that are not there;
 // - names that are missing or given twice, links in a cycle, on two joints or on none;
 // - left-overs of xacro: <xacro:...>, ${...}, $(...) other than $(find ...) in a mesh's file name.
-// Elements that URDF does not define are ignored with all that is in them. A file that is xacro as a whole has that one
-// fault. (urdfdom: a fault in a shape ends the reading of its link, its return value is not asked for.)
+// Elements that URDF does not define are ignored with all that is in them. If the whole file is xacro, that is the only
+// fault reported. (In urdfdom a fault in a shape ends the reading of its link, and the return value is not checked.)
 void CheckUrdf(const UrdfSource& source, UrdfFaults& faults);
 
 }  // namespace merlin

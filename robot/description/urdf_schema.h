@@ -28,7 +28,8 @@ constexpr char kShapeNames[] = "<box>, <cylinder>, <sphere> or <mesh>";
 const UrdfElement& UrdfRobot();
 const std::vector<UrdfElement>& UrdfShapes();
 
-// Whether the text is as many finite numbers, apart by white space, as the attribute holds; and what it should be.
+// Whether the text holds as many finite numbers, separated by white space, as the attribute needs; and a description of
+// what it should hold.
 bool AreNumbers(const std::string& text, const UrdfAttribute& attribute);
 std::string Expected(const UrdfAttribute& attribute);
 

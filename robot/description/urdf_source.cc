@@ -26,8 +26,8 @@ class FirstError : public console_bridge::OutputHandler {
   std::string text;
 };
 
-// Numbers as urdfdom reads them: one blank between two, none before or after. (It takes " 4" for no mass, and drops the
-// rest of the link with it.)
+// Rewrites numbers as urdfdom reads them: one blank between two, none before or after. (It reads " 4" as no mass, and
+// then drops the rest of the link.)
 void TidyNumbers(TiXmlElement& element, const UrdfElement& urdf) {
   for (const UrdfAttribute& attribute : urdf.attributes) {
     const char* text = attribute.numbers > 0 ? element.Attribute(attribute.name) : nullptr;
@@ -84,7 +84,7 @@ urdf::ModelInterfaceSharedPtr ParseUrdf(const UrdfSource& source) {
     error.text = e.what();
   }
   if (model) return model;
-  std::string where = source.path.string();  // urdfdom quotes the link or joint it stumbles over
+  std::string where = source.path.string();  // urdfdom quotes the link or joint that it fails on
   for (const auto& [name, line] : source.lines)
     if (error.text.find("'" + name + "'") != std::string::npos ||
         error.text.find("[" + name + "]") != std::string::npos)

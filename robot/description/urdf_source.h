@@ -1,4 +1,4 @@
-// A URDF file with what urdfdom's model no longer knows: the lines that errors name, and elements that are not URDF's.
+// A URDF file with what urdfdom's model does not keep: line numbers for errors, and elements that URDF does not define.
 #pragma once
 
 #include <tinyxml.h>
@@ -24,8 +24,8 @@ struct UrdfSource {
 // Throws InputError: not readable, not well-formed XML (with its line), no <robot>.
 UrdfSource ReadUrdf(const std::filesystem::path& path);
 
-// The model as urdfdom understands it. Throws InputError with urdfdom's reason; what urdfdom drops without one is found
-// by CheckUrdf (robot/description/urdf_check.h). Prints nothing.
+// The model as urdfdom understands it. Throws InputError with urdfdom's reason. CheckUrdf
+// (robot/description/urdf_check.h) finds what urdfdom drops without giving a reason. Prints nothing.
 urdf::ModelInterfaceSharedPtr ParseUrdf(const UrdfSource& source);
 
 }  // namespace merlin

@@ -280,7 +280,7 @@ TEST_F(Description, RefusesWheelsThatMakeNoCar) {
   expect(rear_right, "xyz=\"0 -0.14 0.055\"", {"car.urdf:", "two axles of one car"});  // one farther out
   expect(rear_left, "xyz=\"0.1 0.13 0.055\"", {"two axles of one car"});               // one farther ahead
   expect(rear_left, "xyz=\"0 0.13 0.065\"", {"two axles of one car"});                 // one farther up
-  expect(rear_left, "xyz=\"0 -0.13 0.055\"", {"stand in one another"});
+  expect(rear_left, "xyz=\"0 -0.13 0.055\"", {"overlap"});
   expect(rear_left, "xyz=\"nan 0.13 0.055\"", {"car.urdf"});
   expect("<cylinder radius=\"0.055\" length=\"0.04\"/></geometry>\n    </collision>",
          "<cylinder radius=\"0.05\" length=\"0.04\"/></geometry>\n    </collision>",

@@ -115,7 +115,7 @@ TEST_F(MeshFile, TakesColoursWhereTheFileHasThem) {
 
 TEST_F(MeshFile, RefusesWhatIsNoMesh) {
   EXPECT_THROW(ReadMesh("/nowhere/x.obj"), InputError);
-  ExpectRefused("x.png", "x", "no mesh that is understood");
+  ExpectRefused("x.png", "x", "not a mesh format that can be read");
   for (const std::string ending : {"obj", "stl", "dae", "gltf", "glb"}) {
     ExpectRefused("empty." + ending, "", "");
     ExpectRefused("words." + ending, "this is no mesh at all, but some words\n", "");
