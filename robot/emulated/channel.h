@@ -14,7 +14,7 @@ class Channel {
  public:
   virtual ~Channel() = default;
   virtual void Put(Side from, Time now, BytesView bytes) = 0;
-  // What has arrived by now.
+  // The bytes that have arrived by now.
   virtual Bytes Take(Side at, Time now) = 0;
 };
 

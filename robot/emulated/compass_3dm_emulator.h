@@ -1,5 +1,5 @@
-// The MicroStrain 3DM as a state machine, in front of a simulated attitude: robot/protocol/compass_3dm.h from the other
-// side.
+// The MicroStrain 3DM as a state machine that reports a simulated attitude: the device's side of
+// robot/protocol/compass_3dm.h.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace merlin {
 struct Compass3dmEmulatorConfig {
   double north_yaw_rad = 0.0;  // yaw of magnetic north in the world, [-pi, pi]
   bool with_checksum = false;
-  double settling_s = 0.03;      // after 0x74 before it heeds 0xC0, [0, 0.035] (guess)
+  double settling_s = 0.03;      // after 0x74; until then it ignores 0xC0, [0, 0.035] (guess)
   double reply_delay_s = 0.005;  // from sampling to the reply's first bit, [0, 0.1] (guess)
 };
 
@@ -28,7 +28,7 @@ void Visit(Visitor& v, Compass3dmEmulatorConfig& c) {
 
 class Compass3dmEmulator : public SerialEnd {
  public:
-  // read: the body's attitude now, yaw in the world, noise included. Asked when 0xC0 has come.
+  // read: returns the body's attitude now, yaw in the world, noise included. Called when 0xC0 has come.
   Compass3dmEmulator(const Compass3dmEmulatorConfig& config, std::function<CompassReading()> read)
       : config_(config), read_(std::move(read)) {}
 

@@ -38,9 +38,9 @@ void ConnectionServer::Accept() {
     connection.thread = std::thread([this, &connection] {
       try {
         serve_(connection.socket);
-      } catch (...) {  // of one connection: it ends, and the other end notices
+      } catch (...) {  // an error of one connection ends that connection only
       }
-      ::shutdown(connection.socket, SHUT_RDWR);  // the other end learns it now; Forget frees the number
+      ::shutdown(connection.socket, SHUT_RDWR);  // tells the other end at once; Forget frees the number
       --serving_;
       connection.over = true;
     });

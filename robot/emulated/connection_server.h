@@ -10,9 +10,10 @@ namespace merlin {
 
 class ConnectionServer {
  public:
-  // Takes over the listening socket. serve: talks until the other end is gone; the socket is closed after it.
+  // Takes over the listening socket. serve: handles one connection until the other end is gone. The socket is closed
+  // when it returns.
   ConnectionServer(int listening, std::function<void(int socket)> serve);
-  // Cuts every connection: a call of serve that waits on its socket is woken.
+  // Shuts every connection down, which wakes a call of serve that waits on its socket.
   ~ConnectionServer();
   ConnectionServer(const ConnectionServer&) = delete;
   ConnectionServer& operator=(const ConnectionServer&) = delete;
@@ -32,7 +33,7 @@ class ConnectionServer {
 
   int listening_;
   std::function<void(int)> serve_;
-  std::list<Connection> connections_;  // the accepting thread's
+  std::list<Connection> connections_;  // used by the accepting thread only
   std::atomic<int> serving_ = 0;
   std::atomic<bool> stop_ = false;
   std::thread thread_;

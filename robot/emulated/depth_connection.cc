@@ -71,7 +71,7 @@ int ListenAt(const std::string& path) {
   if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 && ::listen(socket, 8) == 0)
     return socket;
   ::close(socket);
-  Fail(path, "cannot listen there");
+  Fail(path, "cannot listen on this socket");
 }
 
 int ConnectTo(const std::string& path) {

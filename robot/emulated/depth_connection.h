@@ -9,11 +9,11 @@ namespace merlin {
 
 class DepthConnection {
  public:
-  explicit DepthConnection(int socket) : socket_(socket) {}  // the caller's to close
+  explicit DepthConnection(int socket) : socket_(socket) {}  // the caller closes it
 
   // False: the other end is gone.
   bool Send(const WireMessage& message);
-  // None: the other end is gone, says nothing for the socket's time limit, or sent garbage.
+  // Empty: the other end is gone, sent nothing within the socket's time limit, or sent garbage.
   std::optional<WireMessage> Receive();
 
  private:
@@ -22,7 +22,7 @@ class DepthConnection {
 };
 
 // A local stream socket. Throws MachineError.
-int ListenAt(const std::string& path);  // takes the place of a socket that an earlier run left
+int ListenAt(const std::string& path);  // replaces a socket that an earlier run left behind
 int ConnectTo(const std::string& path);
 
 }  // namespace merlin

@@ -10,7 +10,7 @@
 namespace merlin {
 namespace {
 
-// How long an update waits for the next exposure before it says that there is none.
+// How long an update waits for the next exposure before it fails.
 constexpr std::chrono::milliseconds kFrameLimit(250);
 
 std::uint32_t Whole(double value) { return static_cast<std::uint32_t>(std::llround(value)); }
@@ -38,7 +38,7 @@ DepthServer::DepthServer(const std::string& path, const DepthCameraSheet& sheet,
 DepthServer::~DepthServer() {
   frames_.Close();
   std::error_code error;
-  std::filesystem::remove(path_, error);  // a client that comes now finds no camera
+  std::filesystem::remove(path_, error);  // a new client finds no camera from here on
 }
 
 void DepthServer::Publish(const DepthFrame& frame) {

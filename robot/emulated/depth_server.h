@@ -1,5 +1,5 @@
-// The ToF camera that the vendor library (libmerlin_pmd.so) finds behind a local socket: frames that the twin publishes
-// go out to it, its settings come in.
+// The ToF camera that the vendor library (libmerlin_pmd.so) finds behind a local socket. It sends the frames that the
+// twin publishes, and receives settings.
 #pragma once
 
 #include <functional>
@@ -17,16 +17,18 @@ class DepthServer {
  public:
   using OnSettings = std::function<void(const DepthSettings&)>;
 
-  // path: of the socket, the source argument of pmdOpen. on_settings: called on a thread of the server with settings
-  // that the sheet allows; what it throws as InputError is refused. Throws MachineError where it cannot listen.
+  // path: of the socket; a client gives it to pmdOpen as source argument. on_settings: called on a thread of the server
+  // with settings that the sheet allows; if it throws InputError, the client is told that they are refused. Throws
+  // MachineError if it cannot listen.
   DepthServer(const std::string& path, const DepthCameraSheet& sheet, const DepthSettings& settings,
               OnSettings on_settings);
   ~DepthServer();
 
-  // From any thread. A client that waits for its next frame gets this one; it sees none from before it asked first.
+  // May be called from any thread. A client that waits for its next frame gets this one. A client never gets a frame
+  // that is older than its first request.
   void Publish(const DepthFrame& frame);
 
-  // How many have the camera open.
+  // The number of clients that have the camera open.
   int clients() const { return server_.connections(); }
 
  private:

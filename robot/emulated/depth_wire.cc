@@ -44,7 +44,7 @@ struct Writer {
   }
 };
 
-// Of a payload whose length has been checked.
+// Reads a payload whose length has been checked.
 struct Reader {
   std::span<const std::uint8_t> bytes;
 

@@ -1,5 +1,5 @@
-// What the twin and its vendor library (pmd_library.cc) say to each other over a local socket: messages of our own, the
-// same machine at both ends, little-endian.
+// The messages between the twin and its vendor library (pmd_library.cc) over a local socket. The format is ours. Both
+// ends run on the same machine; numbers are little-endian.
 //
 //   header, 12 bytes: 'M' 'P' 'M' 'D', u16 version (1), u16 kind, u32 bytes of payload
 //   hello   1, server  u16 columns, u16 rows, u32 shortest and longest integration [us], u32 count,
@@ -11,8 +11,8 @@
 //   done    5, server  the settings hold from the next exposure on
 //   refused 6, server  why not: text of at most 256 bytes
 //
-// A reader never asks for more than a frame of the largest picture; what is none of these is garbage, and the
-// connection is given up: the socket loses no bytes, so there is nothing to find again in what follows.
+// No message is longer than a frame of the largest picture. Anything else is garbage, and then the connection is
+// closed: a socket loses no bytes, so the stream cannot be in step again after an error.
 #pragma once
 
 #include <cstdint>
@@ -57,10 +57,10 @@ struct WireDone {};
 struct WireRefused {
   std::string why;
 };
-// In the order of their numbers on the wire.
+// In the order of the kinds' numbers on the wire.
 using WireMessage = std::variant<WireHello, WireUpdate, WireFrame, WireSet, WireDone, WireRefused>;
 
-// None where it is another message, or none.
+// Empty if there is no message, or it is of another type.
 template <class Message>
 std::optional<Message> As(std::optional<WireMessage> message) {
   if (!message || !std::holds_alternative<Message>(*message)) return std::nullopt;
@@ -69,7 +69,7 @@ std::optional<Message> As(std::optional<WireMessage> message) {
 
 std::vector<std::uint8_t> Encode(const WireMessage& message);
 
-// What a stream of bytes begins with.
+// The message at the beginning of a stream of bytes.
 struct WireReading {
   enum class Kind { kPartial, kMessage, kGarbage };
   Kind kind = Kind::kPartial;

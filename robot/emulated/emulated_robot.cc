@@ -9,9 +9,10 @@
 namespace merlin {
 namespace {
 
-constexpr double kLowBattery = 0.9;  // of the nominal voltage (guess): what is left below it soon is gone
+constexpr double kLowBattery = 0.9;  // of the nominal voltage (guess): below it the battery is soon empty
 constexpr auto kNap = std::chrono::microseconds(500);
-constexpr Duration kCaughtUp = std::chrono::milliseconds(20);  // with what setting up has taken
+// Setting up takes time, and the world begins late. From when it is less late than this, its lag is measured.
+constexpr Duration kCaughtUp = std::chrono::milliseconds(20);
 
 EmulatedCar CarOf(Twin& twin) {
   EmulatedCar car{.send = [&twin](const DriveCommand& command) { twin.robot().drive->Send(command); },
@@ -29,7 +30,8 @@ EmulatedCar CarOf(Twin& twin) {
   return car;
 }
 
-// Without end; and attitudes fresh whenever they are asked for, not at the rate the stack would see.
+// The options of the twin behind the devices. It has no end, and computes attitudes at a high rate, because a device
+// may be asked at any time.
 TwinOptions ForDevices(TwinOptions options) {
   options.end = Time::max();
   if (options.compass) options.compass->rate_hz = 250.0;
@@ -96,7 +98,7 @@ void EmulatedRobot::Run() {
   }
 }
 
-// In single steps, and the lock given back between: nobody waits long for it.
+// Makes single steps and releases the lock between them, so that nobody waits long for it.
 void EmulatedRobot::StepTo(Time now) {
   while (!stop_) {
     const std::lock_guard lock(mutex_);
@@ -127,7 +129,7 @@ void EmulatedRobot::ServeDevices() {
   if (compass_pump_) compass_pump_->Step(now);
 }
 
-// As the simulated sensor read it last.
+// The last reading of the simulated sensor.
 CompassReading EmulatedRobot::Attitude() { return attitude_.value_or(CompassReading{}); }
 
 }  // namespace merlin

@@ -1,6 +1,7 @@
-// The twin behind the real protocols: a running car whose microcontroller and 3DM speak over pseudo-terminals, whose ToF
-// camera is found by its maker's library behind a socket, and whose colour camera is a stream on this machine. Drivers
-// cannot tell it from a car. Paced by a real clock: its runs repeat in what they do, not in every bit.
+// The twin behind the real protocols. Its microcontroller and 3DM are connected by pseudo-terminals, its ToF camera by
+// a socket that the stand-in for the maker's library opens, and its colour camera is a network stream on this machine.
+// Drivers cannot tell it from a car. The world follows a real clock, so two runs behave alike but do not have the same
+// bits.
 #pragma once
 
 #include <atomic>
@@ -28,16 +29,16 @@ class EmulatedRobot {
   static constexpr int kDriveBaud = 57600;
   static constexpr double kStreamLatency_s = 0.006;  // measured: coding, network and decoding of a picture
 
-  // sockets: a folder for the ToF camera's socket. The world begins to run when Start is called, and follows clock, which
-  // outlives this and may be asked from any thread. Throws as Twin does, and MachineError where a port or socket cannot
-  // be had.
+  // sockets: a folder for the ToF camera's socket. The world starts with Start and follows clock, which must outlive
+  // this object and be callable from any thread. Throws what Twin throws, and MachineError if a port or socket cannot
+  // be opened.
   EmulatedRobot(const TwinOptions& options, const std::filesystem::path& sockets, const Clock& clock);
   ~EmulatedRobot();
   EmulatedRobot(const EmulatedRobot&) = delete;
   EmulatedRobot& operator=(const EmulatedRobot&) = delete;
 
   void Start();
-  // The world stands still from here on.
+  // Stops the world for good.
   void Stop();
 
   std::string drive_port() const { return drive_terminal_.path(); }
@@ -48,7 +49,7 @@ class EmulatedRobot {
   // Whether a program has the ToF camera open: every program that drives does, and the system closes it even for one that
   // is killed.
   bool HasDriver() const { return depth_.clients() > 0; }
-  // After a program has gone: the next one may open the serial ports.
+  // Called after a program has ended: lets the next one open the serial ports.
   void FreePorts();
 
   // Calls use(twin) while the world stands still.
@@ -57,12 +58,12 @@ class EmulatedRobot {
     const std::lock_guard lock(mutex_);
     return use(twin_);
   }
-  // What stepping the world threw; null: nothing. The world stands still from then on.
+  // What a step of the world threw, if anything. The world stops then.
   std::exception_ptr failure() const {
     const std::lock_guard lock(mutex_);
     return failure_;
   }
-  // The farthest the world has fallen behind the clock: this machine was too slow.
+  // The longest time that the world has been behind the clock, because this machine was too slow.
   Duration lag() const { return Duration(lag_.load()); }
 
  private:
@@ -72,7 +73,7 @@ class EmulatedRobot {
   CompassReading Attitude();
 
   const Clock& clock_;
-  mutable std::mutex mutex_;  // of the twin and what reads it
+  mutable std::mutex mutex_;  // guards the twin and all that reads from it
   Twin twin_;
   Robot robot_;
   std::optional<CompassReading> attitude_;
@@ -86,7 +87,7 @@ class EmulatedRobot {
   DepthServer depth_;
   std::optional<MjpegServer> color_;
   std::exception_ptr failure_;
-  bool caught_up_ = false;  // the thread's
+  bool caught_up_ = false;  // used by the thread only
   std::atomic<std::int64_t> lag_{0};
   std::atomic<bool> stop_{false};
   std::thread thread_;

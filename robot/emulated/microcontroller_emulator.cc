@@ -16,14 +16,14 @@ void MicrocontrollerEmulator::Receive(Time now, BytesView bytes) {
     std::visit([&](const auto& message) { Take(message, received.sequence, now); }, received.message);
 }
 
-// A new host, or the old one started anew: its clock is not the one before.
+// A new host, or the old one after a restart: its clock has changed.
 void MicrocontrollerEmulator::Take(const micro::Hello&, std::uint8_t, Time) {
   delay_.Reset();
   asked_ = true;
 }
 
 void MicrocontrollerEmulator::Take(const micro::Command& command, std::uint8_t sequence, Time now) {
-  if (delay_.IsOld(command.host_time_ms)) return;  // a newer one has come
+  if (delay_.IsOld(command.host_time_ms)) return;  // a newer one has been received
   const Duration left = command.valid_for - delay_.Lateness(command.host_time_ms, now);
   heard_ = now;
   watchdog_ = false;
@@ -51,7 +51,7 @@ Bytes MicrocontrollerEmulator::Send(Time now) {
   if (std::exchange(asked_, false)) add(micro::HelloReply{.firmware = config_.firmware});
   if (now >= next_state_) {
     add(State(now));
-    // On the grid of its rate, unless it has been left alone for long.
+    // On the grid of its rate, unless Send has not been called for long.
     next_state_ = std::max(next_state_ + FromSeconds(1.0 / config_.state_rate_hz), now);
   }
   return out;

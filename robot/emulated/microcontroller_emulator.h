@@ -1,5 +1,5 @@
-// The car's microcontroller as a state machine, in front of a simulated car: what its firmware must do with the
-// protocol of robot/protocol/microcontroller.h, and the model for a real one.
+// The car's microcontroller as a state machine that drives a simulated car. It shows what a real firmware must do with
+// the protocol of robot/protocol/microcontroller.h.
 #pragma once
 
 #include <functional>
@@ -14,9 +14,9 @@
 
 namespace merlin {
 
-// What the microcontroller is wired to. No pan unit: leave its two empty.
+// What the microcontroller is wired to. For a car without a pan unit, leave its two functions empty.
 struct EmulatedCar {
-  std::function<void(const DriveCommand&)> send;  // as Drive::Send: expires by itself
+  std::function<void(const DriveCommand&)> send;  // as Drive::Send: the command expires by itself
   std::function<DriveState()> read;               // the state now
   std::function<void(double angle_rad)> pan{};
   std::function<double()> pan_angle_rad{};
@@ -37,11 +37,11 @@ void Visit(Visitor& v, MicrocontrollerEmulatorConfig& c) {
 
 class MicrocontrollerEmulator : public SerialEnd {
  public:
-  // Switched on at start.
+  // start: when it is switched on.
   MicrocontrollerEmulator(const MicrocontrollerEmulatorConfig& config, EmulatedCar car, Time start);
 
   void Receive(Time now, BytesView bytes) override;
-  Bytes Send(Time now) override;  // runs the watchdog, too
+  Bytes Send(Time now) override;  // also runs the watchdog
   Time next() const override { return next_state_; }
 
   const LinkCounters& counters() const { return decoder_.counters(); }

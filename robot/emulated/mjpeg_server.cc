@@ -32,12 +32,12 @@ Listening ListenOn(int port) {
     const int got = acceptor.local_endpoint().port();
     return {acceptor.release(), got};
   } catch (const boost::system::system_error& error) {
-    throw MachineError("127.0.0.1:" + std::to_string(port) + ": cannot listen there: " + error.code().message());
+    throw MachineError("127.0.0.1:" + std::to_string(port) + ": cannot listen on this port: " + error.code().message());
   }
 }
 
-// One part of the stream: its head, the picture, and the boundary that ends it, so that a reader which waits for the
-// boundary has the picture at once.
+// One part of the stream: its head, the picture, and the boundary that ends it. A reader that waits for the boundary
+// therefore has the picture at once.
 std::vector<std::uint8_t> Part(const ColorFrame& frame, int quality) {
   const cv::Mat picture(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.bgr.data()));
   std::vector<std::uint8_t> jpeg;
@@ -82,7 +82,7 @@ void MjpegServer::Serve(int socket) {
     seen = frame.number;
     if (frame.item != nullptr) asio::write(stream, asio::buffer(Part(*frame.item, quality_)), error);
   }
-  stream.release(error);  // whoever gave the socket closes it
+  stream.release(error);  // the caller closes the socket
 }
 
 }  // namespace merlin

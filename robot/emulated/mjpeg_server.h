@@ -14,14 +14,14 @@ namespace merlin {
 
 class MjpegServer {
  public:
-  // port 0: one that is free. quality: of the JPEG, 1 to 100. Throws MachineError where it cannot listen.
+  // port 0: any free port. quality: of the JPEG, 1 to 100. Throws MachineError if it cannot listen.
   explicit MjpegServer(int port = 0, int quality = 95);
   ~MjpegServer();
 
   // http://127.0.0.1:<port>/stream.mjpg; any path gives the stream.
   const std::string& url() const { return url_; }
   int port() const { return port_; }
-  // From any thread. A client too slow for the rate sees the newest.
+  // May be called from any thread. A client that is too slow skips pictures and gets the newest.
   void Publish(ColorFrame frame) { frames_.Put(std::move(frame)); }
 
  private:
@@ -31,7 +31,7 @@ class MjpegServer {
   int port_ = 0;
   std::string url_;
   Newest<ColorFrame> frames_;
-  std::optional<ConnectionServer> server_;  // last: it ends before what it serves
+  std::optional<ConnectionServer> server_;  // last: it is destroyed before what it uses
 };
 
 }  // namespace merlin

@@ -14,8 +14,8 @@ template <class Item>
 class Newest {
  public:
   struct Numbered {
-    std::uint64_t number = 0;          // 1: the first
-    std::shared_ptr<const Item> item;  // null: none came
+    std::uint64_t number = 0;          // the first is 1
+    std::shared_ptr<const Item> item;  // null: none was put in time
   };
 
   void Put(Item item) {
@@ -25,12 +25,12 @@ class Newest {
     }
     changed_.notify_all();
   }
-  // Of all that came so far, none was skipped.
+  // The number of items put so far.
   std::uint64_t count() const {
     const std::lock_guard lock(mutex_);
     return newest_.number;
   }
-  // The newest after that number, once there is one; null where none comes in time or it is closed.
+  // Waits for an item after that number and returns the newest; null if none is put in time, or after Close.
   Numbered WaitAfter(std::uint64_t number, std::chrono::milliseconds limit) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, limit, [&] { return closed_ || newest_.number > number; });

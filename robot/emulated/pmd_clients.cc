@@ -23,7 +23,7 @@ PmdClient::PmdClient(const std::string& path) : socket_(ConnectTo(path)), connec
   std::optional<WireHello> hello = As<WireHello>(connection_.Receive());
   if (!hello) {
     ::close(socket_);
-    throw MachineError(path + ": what answers there is no emulated camera");
+    throw MachineError(path + ": the program that answers there is not an emulated camera");
   }
   hello_ = std::move(*hello);
 }
@@ -36,7 +36,7 @@ Answer PmdClient::Ask(const WireMessage& request) {
   if (connection_.Send(request)) answer = connection_.Receive();
   if (!answer) throw MachineError("the camera is gone");
   if (const auto* const refused = std::get_if<WireRefused>(&*answer)) throw MachineError(refused->why);
-  if (!std::holds_alternative<Answer>(*answer)) throw MachineError("the camera answers something else");
+  if (!std::holds_alternative<Answer>(*answer)) throw MachineError("the camera sent an unexpected answer");
   return std::get<Answer>(std::move(*answer));
 }
 

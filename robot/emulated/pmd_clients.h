@@ -1,5 +1,5 @@
-// The cameras that a vendor library has open: each a connection to the twin's DepthServer. What both generations of
-// calls are made of; errors become texts, as such a library has them.
+// The cameras that a vendor library has open, each a connection to the twin's DepthServer. Both generations of the
+// calls are built on this. Errors become texts, as in a real vendor library.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace merlin {
 
-// Belongs to one thread at a time, as with the real library. Throws MachineError.
+// Used by one thread at a time, like the real library. Throws MachineError.
 class PmdClient {
  public:
   explicit PmdClient(const std::string& path);
@@ -42,7 +42,7 @@ class PmdClients {
  public:
   int Open(PmdHandle* handle, const std::string& path);
   int Close(PmdHandle handle);
-  // 0, or 1 and LastError where action throws or there is no such camera.
+  // Calls action. Returns 0, or 1 if action throws or there is no such camera; LastError then has the text.
   int Do(PmdHandle handle, const std::function<void(PmdClient&)>& action);
   int LastError(PmdHandle handle, char* text, std::size_t bytes);
 
@@ -57,7 +57,7 @@ class PmdClients {
   std::string open_error_;
 };
 
-// Copies an image into the caller's memory. Throws MachineError where it does not fit.
+// Copies an image into the caller's memory. Throws MachineError if it does not fit.
 void CopyOut(const void* image, std::size_t image_bytes, void* memory, std::size_t memory_bytes);
 
 }  // namespace merlin

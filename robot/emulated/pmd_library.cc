@@ -19,7 +19,7 @@ PmdClients& Clients() {
   return clients;
 }
 
-// The valid value that is meant; throws where there is none.
+// The valid value on the requested side; throws MachineError if there is none.
 unsigned int Valid(std::vector<std::uint32_t> candidates, PmdProximity which, unsigned int value) {
   std::ranges::sort(candidates);
   std::erase_if(candidates, [=](unsigned int valid) {
@@ -37,7 +37,7 @@ int NotHere(PmdHandle handle, const char* what) {
 
 }  // namespace
 
-// Exported, and of the very shape that the driver calls it by.
+// Exports a call, and checks that it has the shape that the driver expects.
 #define PMD_CALL(name, shape)                                   \
   extern "C" __attribute__((visibility("default"))) shape name; \
   int name

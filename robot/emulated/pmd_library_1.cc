@@ -1,6 +1,6 @@
 // The twin's stand-in for the ToF camera maker's library, generation 1 of the calls (robot/protocol/pmd_api.h): a
-// library of its own, for the two generations give the same names to calls of different shape. Its camera on the
-// FireWire bus is the DepthServer whose path the environment's MERLIN_PMD_SOCKET holds.
+// library of its own, because the two generations have calls of the same name with different shapes. Its camera on the
+// FireWire bus is the DepthServer whose path is in the environment variable MERLIN_PMD_SOCKET.
 #include <cstdlib>
 #include <map>
 #include <string>

@@ -22,12 +22,12 @@ constexpr std::size_t kRead_bytes = 4096;
   throw MachineError("pseudo-terminal: " + what + ": " + std::strerror(errno));
 }
 
-// Bytes as they are, from the start: an echo before the program comes would be read as a command.
+// Passes bytes unchanged from the start: an echo before the program opens the port would be read as a command.
 void MakeRaw(int fd) {
   termios settings{};
   if (tcgetattr(fd, &settings) != 0) FailPort("its settings cannot be read");
   cfmakeraw(&settings);
-  if (tcsetattr(fd, TCSANOW, &settings) != 0) FailPort("it cannot be set raw");
+  if (tcsetattr(fd, TCSANOW, &settings) != 0) FailPort("it cannot be set to raw bytes");
 }
 
 }  // namespace
@@ -42,10 +42,10 @@ void PseudoTerminal::Open() {
   std::array<char, 128> name{};
   if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
       ptsname_r(master_, name.data(), name.size()) != 0)
-    FailPort("none to be had");
+    FailPort("cannot be opened");
   port_ = name.data();
   slave_ = open(port_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-  if (slave_ < 0) FailPort("its port cannot be opened");
+  if (slave_ < 0) FailPort("its other end cannot be opened");
   MakeRaw(slave_);
   if (link_.empty()) return;
   std::error_code error;
@@ -75,7 +75,7 @@ Bytes PseudoTerminal::Read() {
 
 void PseudoTerminal::Write(BytesView bytes) {
   if (master_ < 0 || bytes.empty()) return;
-  if (write(master_, bytes.data(), bytes.size()) < 0) return;  // full
+  if (write(master_, bytes.data(), bytes.size()) < 0) return;  // buffer full
 }
 
 int PseudoTerminal::baud() const {

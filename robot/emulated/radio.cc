@@ -12,7 +12,7 @@ namespace {
 constexpr double kSilence_bytes = 1.5;
 constexpr double kSilenceMin_s = 0.5e-3;
 constexpr std::size_t kPacketHead_bytes = 6;
-constexpr std::uint16_t kLossPurpose = 434;  // of the drive's random numbers
+constexpr std::uint16_t kLossPurpose = 434;  // purpose of the drive's random numbers for lost packets
 
 }  // namespace
 
@@ -41,7 +41,7 @@ Time Radio::NextEvent(const Modem& modem) {
   return modem.arrivals.empty() ? modem.packet_end : std::min(modem.arrivals.front(), modem.packet_end);
 }
 
-// In order of time: bytes that arrive at either modem, and packets that end.
+// Handles in order of time the bytes that arrive at either modem and the packets that end.
 void Radio::Advance(Time now) {
   while (true) {
     const bool host_first = NextEvent(modems_[0]) <= NextEvent(modems_[1]);
@@ -73,7 +73,7 @@ void Radio::SendPacket(Modem& from, Modem& to) {
   const double air_s = 8.0 * static_cast<double>(packet.size() + kPacketHead_bytes) / config_.air_bit_s;
   air_free_ = std::max(ended, air_free_) + FromSeconds(config_.turnaround_s + air_s);
   from.deaf_until = air_free_;
-  // By the packet's number, whoever sends it.
+  // The random number depends on the packet's number, whichever modem sends it.
   Random random(seed_, Sensor::kDrive, packets_++, 0, kLossPurpose);
   if (random.Uniform() < config_.packet_loss)
     ++lost_packets_;

@@ -1,7 +1,7 @@
-// A pair of radio modems WIZ-434-SML-IA in place of the cable: 433.92 MHz, half duplex, 100 kbit/s on air. What comes
-// in is cut into packets: a packet ends after 1.5 byte times of silence, at least 0.5 ms, or when it has 96 bytes. Then
-// the modem switches to sending (5 ms), sends the packet with 6 bytes of its own, and the other one hands it out at
-// its baud rate: n bytes take 10 n / baud + silence + 5 ms + 8 (n + 6) / 100 kbit/s + 10 n / baud. Bytes that arrive
+// A pair of radio modems WIZ-434-SML-IA in place of the cable: 433.92 MHz, half duplex, 100 kbit/s on air. Incoming
+// bytes are cut into packets: a packet ends after 1.5 byte times of silence, at least 0.5 ms, or when it has 96 bytes.
+// Then the modem switches to sending (5 ms), sends the packet with 6 bytes of its own, and the other one hands it out
+// at its baud rate: n bytes take 10 n / baud + silence + 5 ms + 8 (n + 6) / 100 kbit/s + 10 n / baud. Bytes that arrive
 // between the packet's end and the end of its sending are lost. Only one can send: the other's packet waits for the air
 // (guess).
 #pragma once
@@ -19,7 +19,7 @@ struct RadioConfig {
   int baud = 9600;              // of both modems: 9600, 19200, 57600 or 115200
   double turnaround_s = 0.005;  // [0, 0.1] data sheet
   double air_bit_s = 1e5;       // [1e3, 1e6] bits a second on air, data sheet
-  double packet_loss = 0.0;     // share of packets nobody hears, [0, 1]
+  double packet_loss = 0.0;     // share of packets that get lost, [0, 1]
 };
 
 template <class Visitor>
@@ -50,7 +50,7 @@ class Radio : public Channel {
         coming;  // bytes on the cable to the modem, in order; each arrives a byte time after the other
     std::deque<Time> arrivals;
     Bytes packet;
-    Time packet_end{Time::max()};  // if nothing more comes
+    Time packet_end{Time::max()};  // if no more bytes come
     Time deaf_until{Time::min()};
     Time cable_free{Time::min()};
     SerialWire out;

@@ -8,7 +8,7 @@ namespace merlin {
 
 void SerialWire::Put(Time now, BytesView bytes) {
   const Time start = std::max(now, busy_until_);
-  // From the count, not byte by byte: rounding does not add up.
+  // Computed from the count, not byte by byte, so that rounding errors do not add up.
   for (std::size_t i = 0; i < bytes.size(); ++i) on_its_way_.push_back({bytes[i], start + WireTime(i + 1, baud_)});
   if (!bytes.empty()) busy_until_ = on_its_way_.back().at;
 }

@@ -14,7 +14,8 @@ void SerialPump::Step(Time now) {
   terminal_.Write(AsHeard(channel_->Take(Side::kHost, now)));
 }
 
-// A receiver at another rate samples each bit at the wrong times: what it reads depends on the bits, but is not they.
+// A receiver at another rate samples the bits at wrong times. What it reads depends on the bits sent, but differs from
+// them.
 Bytes SerialPump::AsHeard(Bytes bytes) const {
   if (terminal_.baud() == baud_) return bytes;
   for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>((byte << 3 | byte >> 1) ^ 0xA5);

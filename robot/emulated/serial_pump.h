@@ -12,8 +12,8 @@ namespace merlin {
 
 class SerialPump {
  public:
-  // device and terminal outlive this. A program that sets another baud rate than the device's receives and sends
-  // garbage.
+  // device and terminal must outlive this object. A program that sets another baud rate than the device's receives and
+  // sends garbage.
   SerialPump(PseudoTerminal& terminal, std::unique_ptr<Channel> channel, SerialEnd& device, int baud);
 
   void Step(Time now);

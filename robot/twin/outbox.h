@@ -1,5 +1,5 @@
-// Measurements of the twin on their way to the stack: each may be taken when its latency is over, and is waited for
-// then if a worker has not finished it yet.
+// Measurements of the twin on their way to the stack. Each can be taken once its latency is over. If a worker has not
+// finished it by then, taking it waits for the worker.
 #pragma once
 
 #include <future>
@@ -15,7 +15,7 @@ class Outbox {
  public:
   explicit Outbox(Duration latency) : latency_(latency) {}
 
-  // Called at its stamp. ready: when it may be taken, where that is not its stamp plus the latency.
+  // Called at its stamp. ready: when it may be taken, if not at its stamp plus the latency.
   void Put(Time stamp, Time ready, std::future<Measurement> measurement) {
     queue_.Put(std::move(measurement), ready, stamp);
   }

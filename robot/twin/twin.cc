@@ -47,14 +47,14 @@ class TwinDepth final : public DepthCamera {
   }
   ~TwinDepth() override {
     worker_.Do([] {}).get();
-  }  // jobs on their way still need this
+  }  // running jobs still use this object
 
   void Sample(const sim::World& world) {
     now_ = world.Now();
     if (!schedule_.Due(now_)) return;
     auto bodies = world.Motions();
     const sim::BodyMotion camera = world.CameraMotion(info_.T_base_camera);
-    // Nothing leaves before its last sub-frame is over.
+    // A frame is not ready before its last sub-frame is over.
     const Time out = now_ + FromSeconds(std::max(info_.sheet.latency_s, 0.5 * info_.sheet.ExposureSpan_s(settings_)));
     outbox_.Put(
         now_, out,
@@ -80,7 +80,7 @@ class TwinDepth final : public DepthCamera {
   DepthCameraInfo info_;
   sim::TofCamera camera_;
   sim::Surroundings surroundings_;
-  sim::RayScene scene_;  // touched by the worker's jobs only
+  sim::RayScene scene_;  // used by the worker's jobs only
   Worker& worker_;
   Schedule schedule_;
   Outbox<DepthFrame> outbox_;
@@ -97,7 +97,7 @@ class TwinColor final : public ColorCamera {
         schedule_(options.color->rate_hz),
         outbox_(FromSeconds(options.color->sheet.latency_s)) {
     Configure(options.color->settings.value_or(DefaultSettings(info_.sheet)));
-    // GL belongs to the thread that draws.
+    // A GL context belongs to the thread that draws.
     worker_
         .Do([this, model = world.model(), &color = *options.color, seed = options.seed] {
           camera_ = std::make_unique<sim::ColorCamera>(model, color.sheet, color.gl, seed, color.motion_blur);
@@ -197,7 +197,7 @@ class TwinTurn final : public PanUnit {
   Outbox<PanState> outbox_{Duration(0)};
 };
 
-// The world shares the seed and the materials.
+// The world's options, with the seed and materials of the whole twin.
 sim::WorldOptions WorldOf(const TwinOptions& options) {
   sim::WorldOptions world = options.world;
   world.materials = options.materials;
@@ -205,7 +205,8 @@ sim::WorldOptions WorldOf(const TwinOptions& options) {
   return world;
 }
 
-// On a single core as well: there three threads take no more processor time than one.
+// The default does not depend on the number of cores: on a single core three threads take no more processor time than
+// one.
 int ThreadsOf(const TwinOptions& options) { return options.threads > 0 ? options.threads : options.color ? 3 : 2; }
 
 }  // namespace
@@ -218,7 +219,7 @@ struct Twin::Impl final : public Clock {
         color_worker(ThreadsOf(options) > 2),
         depth(options, world, depth_worker),
         drive(world, options.drive_rate_hz) {
-    // With two threads the cameras share one beside the caller's.
+    // With two threads both cameras share the one that is not the caller's.
     if (options.color) color.emplace(options, world, ThreadsOf(options) > 2 ? color_worker : depth_worker);
     if (options.compass) compass.emplace(options);
     if (world.pan() != nullptr)

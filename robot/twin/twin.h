@@ -1,6 +1,6 @@
 // The simulated robot: joins the world and its sensors (sim) to the hardware abstraction layer (hal). The world waits
-// for the stack: Clock::WaitUntil steps it. A frame is taken at its exposure, computed beside the physics while its
-// latency lasts, and handed out when that is over: the same bits whatever the number of threads.
+// for the stack: Clock::WaitUntil steps it. The world is copied at a frame's exposure. The frame is computed from the
+// copy beside the physics, and handed out when its latency is over. The bits are the same for any number of threads.
 #pragma once
 
 #include <functional>
@@ -38,7 +38,7 @@ struct TwinOptions {
     double rate_hz = 10.0;
   };
 
-  sim::WorldOptions world;  // its materials and seed are ignored: those below count
+  sim::WorldOptions world;  // its materials and seed are ignored; those below are used
   sim::Materials materials;
   std::uint64_t seed = 1;
   Depth depth;
@@ -46,12 +46,12 @@ struct TwinOptions {
   std::optional<Compass> compass;
   double drive_rate_hz = 50.0;
   Time end{0};  // WaitUntil returns false from here on
-  // 1: everything on the caller's thread; 2: the cameras share one beside it; from 3 on each has its own. 0: as many as
-  // there are cameras, beside the caller's. The same bits for any number.
+  // 1: everything runs on the caller's thread. 2: the cameras share a second thread. 3 or more: each camera has its
+  // own. 0: one thread for each camera besides the caller's. The bits are the same for any number.
   int threads = 0;
 };
 
-// For each body whether it belongs to the car, which its own cameras do not see.
+// For each body, whether it belongs to the car. The car's own cameras do not see these.
 std::vector<bool> CarBodies(const sim::World& world);
 
 class Twin {
