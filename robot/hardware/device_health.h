@@ -1,5 +1,5 @@
 // The health of a device behind a port, judged by its messages. Without a port it is absent; while good messages come,
-// ok; while only unreadable ones come, faulty; else (before the first message, too) silent.
+// ok; while only unreadable ones come, faulty; else silent, also before the first message.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ class DeviceHealth {
   void Connected(Time now);
   void Disconnected(Time now);
   void Heard(Time now);                                   // a good message
-  void GarbageSoFar(Time now, std::uint64_t garbage);     // how much has come in all
+  void GarbageSoFar(Time now, std::uint64_t garbage);     // the total so far
   void Judge(Time now);                                   // call regularly
-  const DeviceStatus& status() const { return status_; }  // without delivered and missed: those are the queue's
+  const DeviceStatus& status() const { return status_; }  // without delivered and missed, which the queue counts
 
  private:
   void Set(DeviceStatus::Health health, Time now);

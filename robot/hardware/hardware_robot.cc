@@ -16,9 +16,9 @@ const char* Name(DeviceStatus::Health health) {
     case DeviceStatus::Health::kOk:
       return "ok";
     case DeviceStatus::Health::kSilent:
-      return "silent: it is there, and nothing comes from it";
+      return "silent: it is connected but sends nothing";
     case DeviceStatus::Health::kFaulty:
-      return "faulty: what comes from it cannot be read (another baud rate or device?)";
+      return "faulty: what it sends cannot be read (another baud rate or device?)";
     default:
       return "absent";
   }
@@ -30,7 +30,7 @@ std::string Complaint(const std::string& device, const DeviceStatus& status, con
   return device + ": " + (own.empty() ? Name(status.health) : own);
 }
 
-// Polls until ready or the time is over. Real time: the devices' threads need it.
+// Polls until ready, at most until the limit. It waits in real time, which the devices' threads need.
 bool WaitFor(const RealClock& clock, Duration limit, const std::function<bool()>& ready) {
   for (const Time end = clock.Now() + limit; !ready();) {
     if (clock.Now() >= end) return false;

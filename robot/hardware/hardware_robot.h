@@ -45,13 +45,14 @@ struct HardwareCameras {
 
 class HardwareRobot {
  public:
-  // Opens every device; throws InputError or MachineError, one sentence, for the first that cannot be used: nothing has
-  // moved then. When the stack stalls, the watchdog of the clock brakes the car. clock outlives this.
+  // Opens every device. Throws InputError or MachineError, one sentence, for the first one that cannot be used; nothing
+  // has moved then. If the stack stalls, the clock's watchdog brakes the car. clock must outlive this object.
   HardwareRobot(const HardwareConfig& config, const HardwareCameras& cameras, RealClock& clock);
   ~HardwareRobot();
 
   Robot robot();
-  // Until every device has delivered, at most limit; then what is wrong with each that has not, one sentence each.
+  // Waits until every device has delivered, at most for limit. Returns what is wrong with each device that has not, one
+  // sentence each.
   std::vector<std::string> WaitUntilReady(Duration limit);
   // What is wrong now with each device that is not well, one sentence each.
   std::vector<std::string> Complaints() const;
@@ -68,11 +69,13 @@ class HardwareRobot {
 struct DeviceReport {
   std::string device;     // "drive", "compass", "depth camera", "colour camera"
   std::string complaint;  // one sentence; empty: it works
-  enum class Fault { kNone, kSilent, kNotOpened, kBadConfig } fault = Fault::kNone;  // bad: its config, not the device
+  // kBadConfig: the config is wrong, not the device.
+  enum class Fault { kNone, kSilent, kNotOpened, kBadConfig } fault = Fault::kNone;
 
   bool works() const { return fault == Fault::kNone; }
 };
-// For `merlin doctor`: every device by itself, so that each is told, not the first alone. Moves nothing.
+// For `merlin doctor`: checks every device by itself, so that all faults are reported, not only the first. Moves
+// nothing.
 std::vector<DeviceReport> CheckDevices(const HardwareConfig& config, const HardwareCameras& cameras, Duration listen);
 
 }  // namespace merlin

@@ -1,5 +1,5 @@
-// Where a driver's thread leaves measurements and the stack takes them; neither waits for the other. It also knows how
-// the device is.
+// Hands measurements from a driver's thread to the stack. Neither waits for the other. It also keeps the device's
+// health.
 #pragma once
 
 #include <cstddef>

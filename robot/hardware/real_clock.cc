@@ -12,7 +12,7 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-constexpr Time kForever = std::chrono::hours(24 * 365 * 100);  // and far from overflow
+constexpr Time kForever = std::chrono::hours(24 * 365 * 100);  // far from an overflow
 
 }  // namespace
 
@@ -39,14 +39,14 @@ struct RealClock::Impl {
 
   const Steady::time_point start = Steady::now();
   const Duration watchdog;
-  Time end;  // the stack's thread alone
+  Time end;  // used by the stack's thread only
   std::mutex mutex;
   std::condition_variable wake;
-  std::optional<Time> working_since;  // the stack came back from WaitUntil and works on its tick
+  std::optional<Time> working_since;  // when the stack's present tick began; none while it waits in WaitUntil
   bool told = false;
   bool ended = false;
   bool quit = false;
-  std::mutex stop_mutex;  // its own: the function may end the run
+  std::mutex stop_mutex;  // a mutex of its own, because the function may end the run
   std::function<void()> stop;
   std::thread thread;
 };

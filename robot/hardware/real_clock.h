@@ -21,21 +21,22 @@ void Visit(Visitor& v, RealClockConfig& c) {
 
 class RealClock : public Clock {
  public:
-  // end: from here on WaitUntil returns false. Starts now.
+  // end: from this time on WaitUntil returns false. The clock starts now.
   RealClock(const RealClockConfig& config, Time end);
   ~RealClock() override;
 
   // From any thread.
   Time Now() const override;
   bool WaitUntil(Time time) override;
-  // From that time on WaitUntil returns false, as end of the constructor has it. From the stack's thread.
+  // From this time on WaitUntil returns false; replaces the end given to the constructor. Call from the stack's thread.
   void EndAt(Time end);
-  // The run is over: WaitUntil returns false at once, also one that waits now. From any thread, not from a signal
-  // handler.
+  // Ends the run: WaitUntil returns false at once, also a call that is waiting now. May be called from any thread, but
+  // not from a signal handler.
   void End();
 
-  // What the watchdog calls, on its thread, once each time the stack stalls; not before the stack's first tick. It
-  // returns when a call under way is over, so that what the old function uses may go.
+  // Sets the function that the watchdog calls, on its own thread, once each time the stack stalls; never before the
+  // stack's first tick. OnStall waits for a call of the old function to end, so that what that function uses may be
+  // destroyed afterwards.
   void OnStall(std::function<void()> stop);
 
  private:

@@ -25,7 +25,8 @@ std::optional<std::string> Device(const std::string& source) {
 
 int Milliseconds(double seconds) { return static_cast<int>(std::lround(1e3 * seconds)); }
 
-// FFmpeg writes to the terminal when a stream ends; a library does not. What is set already stays.
+// FFmpeg would write to the terminal when a stream ends, which a library must not do. A value that is already set
+// stays.
 void KeepFfmpegQuiet() { ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
 
 }  // namespace
@@ -64,10 +65,11 @@ void ColorCameraDriver::Run(std::stop_token stop) {
       const Time arrival = clock_.Now();
       if (!grabbed || !capture_->retrieve(picture)) throw MachineError(config_.source + ": gives no picture");
       Deliver(picture, arrival);
-    } catch (const InputError&) {  // it works, but not as the sheet says
+    } catch (const InputError&) {  // the camera works, but not as its sheet says
       Lose(DeviceStatus::Health::kFaulty, stop);
     } catch (const std::exception&) {  // MachineError, or OpenCV's own
-      // A camera that is there and gives no picture is silent, which the mailbox notices; one that is not is absent.
+      // A camera that is open but gives no picture is silent, which the mailbox notices. One that is not open is
+      // absent.
       Lose(capture_->isOpened() ? DeviceStatus::Health::kOk : DeviceStatus::Health::kAbsent, stop);
     }
   }
@@ -85,7 +87,7 @@ void ColorCameraDriver::OpenIfClosed() {
   if (!open) throw MachineError(config_.source + ": cannot be opened as a camera or a stream");
   if (IsDevice()) {
     capture_->set(cv::CAP_PROP_FPS, info_.rate_hz);
-    capture_->set(cv::CAP_PROP_BUFFERSIZE, 1);  // the newest picture, none that waited
+    capture_->set(cv::CAP_PROP_BUFFERSIZE, 1);  // always the newest picture, not one that has waited
   }
   CheckSize(static_cast<int>(capture_->get(cv::CAP_PROP_FRAME_WIDTH)),
             static_cast<int>(capture_->get(cv::CAP_PROP_FRAME_HEIGHT)));
@@ -135,7 +137,7 @@ void ColorCameraDriver::Lose(DeviceStatus::Health health, std::stop_token stop) 
   was_lost_ = true;
   if (health == DeviceStatus::Health::kFaulty) mailbox_.CountGarbage();
   if (health != DeviceStatus::Health::kOk) mailbox_.Become(health, clock_.Now());
-  if (!std::exchange(lost_once_, true)) return;  // once at once: it may have been a hiccup
+  if (!std::exchange(lost_once_, true)) return;  // the first attempt is made at once: the fault may have been brief
   std::unique_lock lock(mutex_);
   stopping_.wait_for(lock, stop, FromSeconds(config_.reopen_s), [] { return false; });
 }

@@ -2,8 +2,8 @@
 // keeps the newest picture for the stack, and reopens a source that is lost.
 //
 // Measured: a 640 x 480 picture that the emulation's MjpegServer publishes is there for Poll 7 ms later (median; 95 %
-// within 11 ms; two busy cores). FFmpeg's nobuffer and low_delay change nothing for MJPEG, whose pictures need no
-// others; who opens a stream where they do (H.264) sets OpenCV's OPENCV_FFMPEG_CAPTURE_OPTIONS.
+// within 11 ms; two busy cores). FFmpeg's nobuffer and low_delay change nothing for MJPEG, where each picture stands
+// for itself. For a stream whose pictures depend on each other (H.264), set OpenCV's OPENCV_FFMPEG_CAPTURE_OPTIONS.
 #pragma once
 
 #include <condition_variable>
@@ -26,11 +26,11 @@ namespace merlin {
 
 struct ColorCameraConfig {
   std::string source = "/dev/video0";  // a V4L2 device, its path or number; or a URL that FFmpeg opens
-  double stream_latency_s = 0.0;       // of coding and network, beyond the sheet's latency; the emulation's: 0.006
+  double stream_latency_s = 0.0;       // of coding and network, added to the sheet's latency; 0.006 for the emulation
   double silent_after_s = 1.0;         // without a picture the camera counts as silent
   double reopen_s = 0.5;               // between attempts to open a lost source; the first is made at once
-  double open_limit_s = 5.0;           // of a stream: no answer until then, no camera
-  double read_limit_s = 1.0;  // of a stream: no picture until then, it is opened again; a V4L2 device: 10 s (OpenCV's)
+  double open_limit_s = 5.0;           // of a stream: opening fails if there is no answer by then
+  double read_limit_s = 1.0;  // of a stream: it is reopened if no picture comes by then; a V4L2 device: 10 s (OpenCV's)
 };
 
 template <class Visitor>
@@ -45,15 +45,17 @@ void Visit(Visitor& v, ColorCameraConfig& c) {
 
 class ColorCameraDriver final : public ColorCamera {
  public:
-  // Opens the source and waits for no picture. Throws MachineError where it cannot be opened, InputError where it tells
-  // a size that is not the sheet's, or for invalid settings. Another thread calls Now(), too.
+  // Opens the source, without waiting for a picture. Throws MachineError if it cannot be opened, InputError if it
+  // reports another size than the sheet's, and for invalid settings. The clock's Now() is also called from another
+  // thread.
   ColorCameraDriver(const ColorCameraConfig& config, const ColorCameraInfo& info, const ColorSettings& settings,
                     const Clock& clock);
   ~ColorCameraDriver() override;
 
   const ColorCameraInfo& Info() const override { return info_; }
-  // Exposure, its automatic included, goes to a V4L2 device. Gain and white balance have no unit that such devices
-  // share, and a stream cannot be told anything: there the frames' settings are what was asked for.
+  // A V4L2 device gets the exposure time or automatic exposure. Gain and white balance are not sent, because such
+  // devices share no unit for them, and a stream takes no settings at all. The frames then report the settings that
+  // were asked for.
   void Configure(const ColorSettings& settings) override;
   std::optional<ColorFrame> Poll() override { return mailbox_.Take(); }
   DeviceStatus Status() const override { return WithRate(mailbox_.Status(clock_.Now()), info_.rate_hz); }
@@ -72,20 +74,20 @@ class ColorCameraDriver final : public ColorCamera {
   const Clock& clock_;
   Mailbox<ColorFrame> mailbox_;
 
-  std::mutex mutex_;  // of the next two
+  std::mutex mutex_;  // guards the next two
   ColorSettings wanted_;
   bool wanted_is_new_ = true;
   std::condition_variable_any stopping_;
 
-  // The thread's own.
-  std::optional<std::string> source_device_;  // path, where the source is a V4L2 device
+  // Used by the thread only.
+  std::optional<std::string> source_device_;  // the path, if the source is a V4L2 device
   std::unique_ptr<cv::VideoCapture> capture_;
   bool was_lost_ = false;
-  bool lost_once_ = false;  // and nothing came since
+  bool lost_once_ = false;  // and no picture has come since
   ColorSettings asked_;
   Time last_stamp_ = Time::min();
   std::uint64_t index_ = 0;
-  std::jthread thread_;  // last: it ends before what it uses
+  std::jthread thread_;  // last: it ends before what it uses is destroyed
 };
 
 }  // namespace merlin

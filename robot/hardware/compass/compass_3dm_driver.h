@@ -12,7 +12,8 @@ namespace merlin {
 
 class Compass3dmDriver : public Compass {
  public:
-  // Throws MachineError if the port cannot be opened. The clock outlives this, and may be asked from any thread.
+  // Throws MachineError if the port cannot be opened. The clock must outlive this object and be callable from any
+  // thread.
   Compass3dmDriver(const Compass3dmConfig& config, const Clock& clock);
   ~Compass3dmDriver() override;
 

@@ -46,7 +46,7 @@ std::string Compass3dmHost::Complaint() const {
     case Health::kSilent:
       return where + "it does not answer";
     case Health::kFaulty:
-      return where + "what it answers is no reading; is it set to " + std::to_string(config_.serial.baud) + " baud?";
+      return where + "its answers are not readings; is it set to " + std::to_string(config_.serial.baud) + " baud?";
     case Health::kOk:
       break;
   }

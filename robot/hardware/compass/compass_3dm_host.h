@@ -1,4 +1,4 @@
-// The PC's end of the 3DM's line, without port and thread: polls, and turns headings into yaw. Protocol:
+// The PC's end of the line to the 3DM, without a port or a thread. It polls, and turns headings into yaw. Protocol:
 // robot/protocol/compass_3dm.h.
 #pragma once
 
@@ -16,7 +16,7 @@ struct Compass3dmConfig {
   SerialConfig serial{.port = "/dev/ttyUSB0", .baud = 9600};
   compass_3dm::PollerConfig poll{};
   double north_yaw_rad = 0.0;       // yaw of magnetic north in the map's frame, [-pi, pi]; of the room
-  bool thesis_arithmetic = false;   // angles as MERLIN's own software took them, up to 1 deg off
+  bool thesis_arithmetic = false;   // decode angles as MERLIN's own software did, up to 1 deg off
   double sampling_latency_s = 0.0;  // from the last bit of the question to sampling, [0, 0.035] (guess)
   double silent_after_s = 0.5;      // without a good reading, [0.2, 10] (guess)
 };

@@ -39,7 +39,7 @@ class Library {
     const PmdHandle handle = std::exchange(handle_, 0);
     try {
       if (handle != 0) close_(handle);
-    } catch (...) {  // a library that cannot close: nothing is left to be done
+    } catch (...) {  // the library cannot close: nothing more can be done
     }
   }
   void Update() { Check(update_(handle_), "pmdUpdate"); }
@@ -88,7 +88,8 @@ class Generation2 final : public PmdCamera, private Library {
     Check(valid_integration_(handle_, &valid_us, 0, kPmdCloseTo, Rounded(settings.integration_s * 1e6)),
           "pmdGetValidIntegrationTime");
     Check(set_integration_(handle_, 0, valid_us), "pmdSetIntegrationTime");
-    // In steps that never hold the same frequency twice. A camera with one frequency is not asked for a second index.
+    // Set in steps, so that the two frequencies are never the same. A camera with one frequency is not asked for a
+    // second index.
     if (second_frequency_set_) SetFrequency(1, 0.0);
     SetFrequency(0, settings.frequency_hz);
     second_frequency_set_ = settings.second_frequency_hz > 0.0;
@@ -148,7 +149,7 @@ class Generation2 final : public PmdCamera, private Library {
   PmdGetSourceDataDescription* describe_;
 };
 
-// It cannot be asked for the picture's size: that of the sheet must be the camera's.
+// These calls do not tell the picture's size, so the sheet must have the right one.
 class Generation1 final : public PmdCamera, private Library {
  public:
   Generation1(const PmdCameraConfig& config, const DepthCameraSheet& sheet)
@@ -205,7 +206,7 @@ class Generation1 final : public PmdCamera, private Library {
   Pmd1GetImage* intensities_;
 };
 
-// A camera whose library may throw exceptions of its own, whatever the language of its calls says.
+// A camera whose library may throw exceptions of its own, although its calls are those of C.
 template <class Generation>
 class Guarded final : public PmdCamera {
  public:

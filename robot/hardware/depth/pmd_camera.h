@@ -14,7 +14,7 @@ namespace merlin {
 struct PmdCameraConfig {
   std::string library;  // path of the maker's shared library
   int generation = 2;   // of its calls: 2 (PMDSDK 2), 1 (MiniSDK 1: the first camera on the FireWire bus, no arguments)
-  // Passed on as they are; the sheet of the camera's SDK names them.
+  // Passed to the library unchanged; the documentation of the camera's SDK names them.
   std::string source_plugin;
   std::string source_argument;
   std::string processing_plugin;
@@ -41,15 +41,15 @@ struct PmdFrame {
 class PmdCamera {
  public:
   virtual ~PmdCamera() = default;
-  // Throws InputError for a camera whose picture has not the sheet's size.
+  // Throws InputError for a camera whose picture does not have the sheet's size.
   virtual void Open() = 0;
   virtual void Close() = 0;
-  // The nearest the camera can do; holds from the next exposure on.
+  // Sets the nearest settings that the camera can use; they apply from the next exposure on.
   virtual void Set(const DepthSettings& settings) = 0;
   virtual PmdFrame WaitForFrame() = 0;
 };
 
-// Opens the library, not yet the camera. Throws InputError for a library that is none or lacks calls.
+// Opens the library, not yet the camera. Throws InputError for a file that is not a library or lacks calls.
 std::unique_ptr<PmdCamera> LoadPmdCamera(const PmdCameraConfig& config, const DepthCameraSheet& sheet);
 
 }  // namespace merlin

@@ -1,4 +1,4 @@
-// A shared library opened at run time, and its calls by name.
+// A shared library that is opened at run time. Its calls are found by name.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace merlin {
 
 class SharedLibrary {
  public:
-  // Throws InputError for a file that is not there or is no library.
+  // Throws InputError for a file that does not exist or is not a library.
   explicit SharedLibrary(const std::string& path);
   ~SharedLibrary();
   SharedLibrary(const SharedLibrary&) = delete;

@@ -13,19 +13,20 @@ namespace {
 
 constexpr std::size_t kPlaces = 4;  // frames that wait for a slow reader
 
-// The device counts whole microseconds and hertz. What it confirms is what was asked for, to the last bit.
+// The device counts whole microseconds and hertz. Settings that it confirms are therefore replaced by the exact ones
+// that were asked for.
 DepthSettings Used(const DepthSettings& told, const DepthSettings& asked) {
   DepthSettings used = told;
   if (std::lround(told.integration_s * 1e6) == std::lround(asked.integration_s * 1e6))
     used.integration_s = asked.integration_s;
-  // What the description says of exposures that are not used means nothing.
+  // The description's values for exposures that are not used have no meaning.
   if (asked.second_frequency_hz == 0.0) used.second_frequency_hz = 0.0;
   return used;
 }
 
 std::uint8_t Grey(double intensity) { return static_cast<std::uint8_t>(std::clamp(std::round(intensity), 0.0, 255.0)); }
 
-// Where the library gives no flags: what the images themselves tell.
+// For a library without flags: the flags that follow from the images.
 std::uint8_t FlagsOf(float range_m, float amplitude_e, const DepthCameraSheet& sheet) {
   if (range_m == 0.0f) return kInvalid;
   return amplitude_e < sheet.low_signal_amplitude_e ? kLowSignal : 0;
@@ -76,10 +77,10 @@ void TofCameraDriver::Run(std::stop_token stop) {
       SetIfNew();
       const PmdFrame frame = camera_->WaitForFrame();
       Deliver(frame, clock_.Now());
-    } catch (const InputError& error) {  // it works, but not as the sheet says
+    } catch (const InputError& error) {  // the camera works, but not as its sheet says
       Lose(DeviceStatus::Health::kFaulty, error.what(), stop);
     } catch (const std::exception& error) {
-      // A camera that is there and gives no frame is silent, which the mailbox notices; one that is not is absent.
+      // A camera that is open but gives no frame is silent, which the mailbox notices. One that is not open is absent.
       Lose(open_ ? DeviceStatus::Health::kOk : DeviceStatus::Health::kAbsent, error.what(), stop);
     }
   }
@@ -147,7 +148,7 @@ void TofCameraDriver::Lose(DeviceStatus::Health health, const std::string& compl
   was_lost_ = true;
   if (health == DeviceStatus::Health::kFaulty) mailbox_.CountGarbage();
   if (health != DeviceStatus::Health::kOk) mailbox_.Become(health, clock_.Now());
-  if (!std::exchange(lost_once_, true)) return;  // once at once: it may have been a hiccup
+  if (!std::exchange(lost_once_, true)) return;  // the first attempt is made at once: the fault may have been brief
   std::unique_lock lock(mutex_);
   stopping_.wait_for(lock, stop, FromSeconds(config_.reopen_s), [] { return false; });
 }

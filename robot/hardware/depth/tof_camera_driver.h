@@ -17,8 +17,8 @@ namespace merlin {
 
 struct TofCameraConfig {
   PmdCameraConfig pmd;
-  double electrons_per_amplitude = 1.0;  // of the library's amplitude; from the noise on a wall; the emulation's: 1
-  double grey_per_intensity = 1.0;       // of the library's intensity; 255 is the full well, beyond is clamped
+  double electrons_per_amplitude = 1.0;  // of the library's unit; from the noise on a wall; 1 for the emulation
+  double grey_per_intensity = 1.0;       // per unit of the library's intensity; 255 is the full well, more is clamped
   double silent_after_s = 0.5;           // without a frame the camera counts as silent
   double reopen_s = 0.5;                 // between attempts to open a lost camera; the first is made at once
 };
@@ -34,14 +34,15 @@ void Visit(Visitor& v, TofCameraConfig& c) {
 
 class TofCameraDriver final : public DepthCamera {
  public:
-  // Opens library and camera. Throws InputError for a library that is none or lacks calls, a picture that does not fit
-  // the sheet, or invalid settings; MachineError where the camera cannot be opened. Another thread calls Now(), too.
+  // Opens the library and the camera. Throws InputError for a file that is not a library or lacks calls, for a picture
+  // that does not fit the sheet, and for invalid settings; MachineError if the camera cannot be opened. The clock's
+  // Now() is also called from another thread.
   TofCameraDriver(const TofCameraConfig& config, const DepthCameraInfo& info, const DepthSettings& settings,
                   const Clock& clock);
   ~TofCameraDriver() override;
 
   const DepthCameraInfo& Info() const override { return info_; }
-  // The maker's post-processing and raw data have no calls that every camera shares: both are refused.
+  // There are no calls for the maker's post-processing and raw data that all cameras share, so both are refused.
   void Configure(const DepthSettings& settings) override;
   std::optional<DepthFrame> Poll() override { return mailbox_.Take(); }
   DeviceStatus Status() const override { return WithRate(mailbox_.Status(clock_.Now()), info_.rate_hz); }
@@ -60,21 +61,21 @@ class TofCameraDriver final : public DepthCamera {
   const Clock& clock_;
   Mailbox<DepthFrame> mailbox_;
 
-  mutable std::mutex mutex_;  // of the next three
+  mutable std::mutex mutex_;  // guards the next three
   std::string complaint_;
   DepthSettings wanted_;
   bool wanted_is_new_ = true;
   std::condition_variable_any stopping_;
 
-  // The thread's own.
+  // Used by the thread only.
   std::unique_ptr<PmdCamera> camera_;
   bool open_ = false;
   bool was_lost_ = false;
-  bool lost_once_ = false;  // and nothing came since
+  bool lost_once_ = false;  // and no frame has come since
   DepthSettings asked_;
   Time last_stamp_ = Time::min();
   std::uint64_t index_ = 0;
-  std::jthread thread_;  // last: it ends before what it uses
+  std::jthread thread_;  // last: it ends before what it uses is destroyed
 };
 
 }  // namespace merlin

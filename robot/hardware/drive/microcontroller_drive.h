@@ -15,7 +15,8 @@ namespace merlin {
 
 class MicrocontrollerDrive : public Drive {
  public:
-  // Throws MachineError if the port cannot be opened. The clock outlives this, and may be asked from any thread.
+  // Throws MachineError if the port cannot be opened. The clock must outlive this object and be callable from any
+  // thread.
   MicrocontrollerDrive(const MicrocontrollerConfig& config, const Clock& clock);
   // Stops the car.
   ~MicrocontrollerDrive() override;

@@ -11,7 +11,8 @@ using microcontroller::State;
 
 constexpr Duration kGreetPeriod = std::chrono::milliseconds(500);
 constexpr std::size_t kCommand_bytes = 20, kState_bytes = 26;  // on the wire
-// A state older than the last by more than this comes from a microcontroller that started anew, by less from the past.
+// A state whose time is earlier than the last one's by more than this comes from a microcontroller that has restarted.
+// If it is earlier by less, it is an old state that arrived late.
 constexpr std::int32_t kRestart_ms = 1000;
 
 }  // namespace
@@ -54,10 +55,11 @@ void MicrocontrollerHost::Take(const HelloReply& reply, Time) {
 void MicrocontrollerHost::Take(const State& state, Time now) {
   if (last_) {
     const auto step_ms = static_cast<std::int32_t>(state.micro_time_ms - last_->micro_time_ms);
-    if (step_ms <= 0 && step_ms > -kRestart_ms) return;  // a duplicate, or out of the past
+    if (step_ms <= 0 && step_ms > -kRestart_ms) return;  // a duplicate, or an old state
     const bool restarted = step_ms <= -kRestart_ms;
     if (restarted) delay_.Reset();
-    // The count goes on across its wrap, and stands still across a restart, when it begins anew.
+    // The count continues where the wire's counter wraps. After a restart, when that counter begins again, it stays as
+    // it was.
     if (!restarted)
       counts_ += static_cast<std::int32_t>(static_cast<std::uint32_t>(state.encoder_counts) -
                                            static_cast<std::uint32_t>(last_->encoder_counts));
@@ -76,8 +78,8 @@ void MicrocontrollerHost::Take(const State& state, Time now) {
   if (has_pan_) pan_states.Put({.stamp = last_stamp_, .angle_rad = *state.pan_angle_rad});
 }
 
-// The sampling instant: what the state was late beside the quickest one is known from the microcontroller's own clock,
-// what the quickest one took is the time on the wire and the documented latency.
+// The sampling instant. The microcontroller's clock shows by how much this state was later than the quickest one. The
+// quickest one took its time on the wire and the documented latency.
 Time MicrocontrollerHost::Stamp(std::uint32_t micro_time_ms, Time now) {
   return now - delay_.Lateness(micro_time_ms, now) - WireTime(kState_bytes, config_.serial.baud) -
          FromSeconds(config_.sampling_latency_s);
@@ -104,7 +106,7 @@ Bytes MicrocontrollerHost::Send(Time now) {
   return out;
 }
 
-// A new command at once, but never faster than the line takes them: else they would queue up and come late.
+// A new command is sent at once, but not faster than the line can carry commands: they would queue up and arrive late.
 Time MicrocontrollerHost::next() const {
   const Duration line_free = WireTime(2 * kCommand_bytes, config_.serial.baud);
   const Time command = sent_ + (is_new_ ? line_free : FromSeconds(1.0 / config_.command_rate_hz));

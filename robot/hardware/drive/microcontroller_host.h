@@ -1,5 +1,5 @@
-// The PC's end of the microcontroller's line, without port or thread. It repeats the command in force, and turns the
-// microcontroller's states into measurements. Protocol: robot/protocol/microcontroller.h.
+// The PC's end of the line to the microcontroller, without a port or a thread. It repeats the command in force, and
+// turns the microcontroller's states into measurements. Protocol: robot/protocol/microcontroller.h.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ namespace merlin {
 struct MicrocontrollerConfig {
   SerialConfig serial{.port = "/dev/ttyS0", .baud = 57600};  // COM1
   double command_rate_hz =
-      20.0;  // at which the command in force is sent again, [10, 100]; its watchdog waits 0.15 s (guess)
+      20.0;  // at which the command in force is repeated, [10, 100]; the microcontroller's watchdog waits 0.15 s (guess)
   double sampling_latency_s = 0.0;  // from sampling to a state's first bit, [0, 0.1] (guess)
   double silent_after_s = 0.5;      // without a good message, [0.05, 10] (guess)
 };

@@ -53,7 +53,7 @@ bool JoystickDevice::Read() {
   if (fd_ < 0) {
     fd_ = Open(device_);
     if (fd_ < 0) return false;
-    decoder_ = {};  // the kernel tells a new reader where everything is
+    decoder_ = {};  // the kernel sends the state of all axes and buttons to a new reader
   }
   std::array<std::uint8_t, kEvents_bytes> buffer;
   for (int reads = 0; reads < kReadsMax; ++reads) {
@@ -63,7 +63,7 @@ bool JoystickDevice::Read() {
       continue;
     }
     if (size < 0 && (errno == EAGAIN || errno == EINTR)) return true;
-    if (size < 0) Close();  // pulled out
+    if (size < 0) Close();  // unplugged
     return false;
   }
   return true;

@@ -10,14 +10,15 @@ namespace merlin {
 
 class JoystickDevice {
  public:
-  // Throws MachineError: no such device, or not to be opened; InputError: what is there is no joystick.
+  // Throws MachineError if the device does not exist or cannot be opened, InputError if it is not a joystick.
   explicit JoystickDevice(const std::filesystem::path& device);
   ~JoystickDevice();
   JoystickDevice(const JoystickDevice&) = delete;
   JoystickDevice& operator=(const JoystickDevice&) = delete;
 
-  // Takes what has come. False: it has gone (pulled out; nobody writes to the pipe) and its state is old; it is opened
-  // again when it is back. A stick that is held still sends nothing, and still counts as there.
+  // Takes the events that have come. False: the joystick is gone (unplugged, or nobody writes to the pipe), and its
+  // state is out of date; it is opened again when it is back. A stick that is held still sends nothing, but counts as
+  // connected.
   bool Read();
   const joystick::State& state() const { return decoder_.state(); }
 

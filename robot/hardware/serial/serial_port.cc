@@ -72,7 +72,7 @@ void SerialPort::Open() {
 void SerialPort::SetUp() {
   termios settings{};
   if (tcgetattr(fd_, &settings) != 0) Fail("this is not a serial port");
-  // flock binds those who ask, TIOCEXCL (undone in Close) also those who do not.
+  // flock keeps out programs that ask for the lock; TIOCEXCL (undone in Close) keeps out all others too.
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) Fail("it belongs to another program");
   ioctl(fd_, TIOCEXCL);
   cfmakeraw(&settings);
@@ -83,7 +83,7 @@ void SerialPort::SetUp() {
   cfsetspeed(&settings, Speed(config_));
   termios now{};
   if (tcsetattr(fd_, TCSANOW, &settings) != 0 || tcgetattr(fd_, &now) != 0) Fail(std::strerror(errno));
-  if (cfgetospeed(&now) != Speed(config_)) Fail("it does not do " + std::to_string(config_.baud) + " baud");
+  if (cfgetospeed(&now) != Speed(config_)) Fail("it does not support " + std::to_string(config_.baud) + " baud");
   tcflush(fd_, TCIOFLUSH);
 }
 
@@ -124,7 +124,7 @@ void SerialPort::Write(BytesView message) {
 }
 
 bool SerialPort::Wait(Duration timeout) {
-  // poll passes over a negative descriptor: without a port it waits for Wake alone.
+  // poll ignores a negative descriptor: without a port it waits for Wake only.
   std::array<pollfd, 2> fds{{{wake_fd_, POLLIN, 0}, {fd_, POLLIN, 0}}};
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(std::max(timeout, Duration(0)));
   if (poll(fds.data(), fds.size(), static_cast<int>(ms.count())) <= 0) return false;
@@ -135,7 +135,7 @@ bool SerialPort::Wait(Duration timeout) {
 
 void SerialPort::Wake() {
   const std::uint64_t one = 1;
-  if (write(wake_fd_, &one, sizeof one) < 0) return;  // full: it is awake already
+  if (write(wake_fd_, &one, sizeof one) < 0) return;  // counter full: Wait is already woken
 }
 
 }  // namespace merlin

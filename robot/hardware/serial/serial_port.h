@@ -28,29 +28,30 @@ class SerialPort {
   SerialPort(const SerialPort&) = delete;
   SerialPort& operator=(const SerialPort&) = delete;
 
-  // Throws MachineError, one sentence: no such port, not a serial port, no permission, belongs to another program. What
-  // came before is thrown away. While it is open no other program that locks its ports can open it.
+  // Throws MachineError, one sentence: no such port, not a serial port, no permission, belongs to another program.
+  // Bytes from before are discarded. While the port is open, other programs cannot open it.
   void Open();
   bool is_open() const { return fd_ >= 0; }
 
   // What has arrived, up to 4096 bytes a call. A port that is unplugged closes itself: see is_open().
   Bytes Read();
-  // A message that the line begins to take goes out whole: the tail of a short write is kept and comes before whatever
-  // is written next (nothing, too: Write({})). While a tail waits, new messages are dropped: they would come too late.
+  // Once the port has taken the beginning of a message, the whole message is sent: the tail of a short write is kept,
+  // and the next Write (also an empty one, Write({})) sends it first. While a tail waits, new messages are dropped,
+  // because they would arrive too late.
   void Write(BytesView message);
-  // Until something can be read or another thread calls Wake; false: the time was over before.
+  // Waits until something can be read or another thread calls Wake. False: the time was over first.
   bool Wait(Duration timeout);
   void Wake();
 
  private:
   void Close();
   void SetUp();
-  // Returns what the line did not take.
+  // Returns the bytes that the port did not take.
   BytesView Send(BytesView bytes);
   [[noreturn]] void Fail(const std::string& what) const;
 
   SerialConfig config_;
-  Bytes tail_;  // of a message that the line has taken in part
+  Bytes tail_;  // the rest of a message that the port has taken in part
   int fd_ = -1;
   int wake_fd_ = -1;
 };

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Duration kReopenPeriod = std::chrono::milliseconds(200);
 constexpr Duration kLongestWait = std::chrono::milliseconds(20);  // health is judged at least as often
-constexpr Duration kFarewell = std::chrono::milliseconds(50);     // what is due later is not sent at the end
+constexpr Duration kFarewell = std::chrono::milliseconds(50);     // the end sends nothing that is due later than this
 
 }  // namespace
 
@@ -64,7 +64,7 @@ bool SerialThread::Reopen(Time now) {
   try {
     port_.Open();
   } catch (const MachineError&) {
-    return false;  // still gone: the device's status says so
+    return false;  // the port is still missing, which the device's status shows
   }
   const std::lock_guard lock(mutex_);
   end_.Connected(now);

@@ -20,13 +20,13 @@ class HostEnd : public SerialEnd {
 
 class SerialThread {
  public:
-  // Opens the port and throws MachineError if it cannot. All calls to end happen with mutex held, and none of them
-  // waits for the port; clock, end and mutex outlive this.
+  // Opens the port, and throws MachineError if it cannot. end is called with mutex held only, and never while waiting
+  // for the port. clock, end and mutex must outlive this object.
   SerialThread(const SerialConfig& config, const Clock& clock, HostEnd& end, std::mutex& mutex);
-  // Sends what end has to send now.
+  // Sends what end still has to send.
   ~SerialThread();
 
-  // end has something to send before its next().
+  // Call when end has something to send before its next().
   void Wake() { port_.Wake(); }
 
  private:
