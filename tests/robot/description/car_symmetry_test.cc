@@ -32,7 +32,8 @@ TEST(CarSymmetry, AveragesAnAxleThatIsOffWithOneWarning) {
         SCOPED_TRACE(fmt::format("{} by {} mm along {} {} {}", part.at, off_mm, way.x(), way.y(), way.z()));
         const CarDescription car = Rover(With(part, off_mm * way.x(), off_mm * way.y(), off_mm * way.z())).Read();
         ASSERT_EQ(car.warnings.size(), 1u);
-        ExpectSays(car.warnings[0], {"car.urdf", fmt::format("by {:.2f} mm", off_mm), "means count"});
+        ExpectSays(car.warnings[0],
+                   {"car.urdf", fmt::format("by {:.2f} mm", off_mm), "the means of both sides are used"});
         const double ahead_m = (std::string(part.at) == kRearLeft.at ? -0.5e-3 : 0.5e-3) * off_mm * way.x();
         EXPECT_NEAR(car.wheelbase_m, 0.5 + ahead_m, 1e-5);
         EXPECT_NEAR(car.track_m, 0.4 + 0.5e-3 * off_mm * way.y(), 1e-5);
