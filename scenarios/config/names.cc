@@ -83,8 +83,13 @@ fs::path CarFile(const std::string& name) {
   return Resolve("car", name, Home() / "models" / name / (name + ".urdf"), ".urdf", {"merlin"});
 }
 
+fs::path SweepFile(const std::string& name) {
+  return Resolve("sweep", name, Home() / "scenarios/sweeps" / (name + ".yaml"), ".yaml", SweepNames());
+}
+
 std::vector<std::string> ScenarioNames() { return StemsIn(Home() / "scenarios", ".yaml"); }
 std::vector<std::string> RoomNames() { return StemsIn(Home() / "models/rooms", ".xml"); }
 std::vector<std::string> CameraNames() { return StemsIn(Home() / "models/cameras", ".yaml"); }
+std::vector<std::string> SweepNames() { return StemsIn(Home() / "scenarios/sweeps", ".yaml"); }
 
 }  // namespace merlin

@@ -18,10 +18,12 @@ std::filesystem::path DepthCameraFile(const std::string& name_or_path);  // the 
 std::filesystem::path ColorCameraFile(const std::string& name_or_path);
 std::filesystem::path ActorFile(const std::string& name_or_path);  // models/actors/<name>.xml
 std::filesystem::path CarFile(const std::string& name_or_path);    // models/<name>/<name>.urdf
+std::filesystem::path SweepFile(const std::string& name_or_path);  // scenarios/sweeps/<name>.yaml
 
 // Sorted.
 std::vector<std::string> ScenarioNames();
 std::vector<std::string> RoomNames();
 std::vector<std::string> CameraNames();
+std::vector<std::string> SweepNames();
 
 }  // namespace merlin

@@ -22,6 +22,7 @@ void AddRegister(CLI::App& app, int& exit_code);
 void AddBench(CLI::App& app, int& exit_code);
 void AddOptimize(CLI::App& app, int& exit_code);
 void AddEval(CLI::App& app, int& exit_code);
+void AddSweep(CLI::App& app, int& exit_code);
 void AddList(CLI::App& app, int& exit_code);
 void AddDoctor(CLI::App& app, int& exit_code);
 

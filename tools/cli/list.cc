@@ -1,4 +1,4 @@
-// `merlin list`: lists scenarios, cameras, rooms and behaviors, with one sentence about each.
+// `merlin list`: lists scenarios, sweeps, cameras, rooms and behaviors, with one sentence about each.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -63,6 +63,7 @@ void Print(const std::string& kind, const std::vector<Item>& items) {
 void List(const std::string& kind) {
   const bool all = kind.empty();
   if (all || kind == "scenarios") Print("scenarios", ItemsOf(ScenarioNames(), ScenarioFile));
+  if (all || kind == "sweeps") Print("sweeps", ItemsOf(SweepNames(), SweepFile));
   if (all || kind == "cameras") Print("cameras", ItemsOf(CameraNames(), CameraFile));
   if (all || kind == "rooms") Print("rooms", ItemsOf(RoomNames(), RoomFile));
   if (all || kind == "behaviors") Print("behaviors", BehaviorItems());
@@ -73,8 +74,8 @@ void List(const std::string& kind) {
 void AddList(CLI::App& app, int&) {
   const auto kind = std::make_shared<std::string>();
   CLI::App* list = app.add_subcommand("list", "what there is, one whole sentence each");
-  list->add_option("kind", *kind, "scenarios, cameras, rooms or behaviors; default all")
-      ->check(CLI::IsMember({"scenarios", "cameras", "rooms", "behaviors"}));
+  list->add_option("kind", *kind, "scenarios, sweeps, cameras, rooms or behaviors; default all")
+      ->check(CLI::IsMember({"scenarios", "sweeps", "cameras", "rooms", "behaviors"}));
   list->callback([kind] { List(*kind); });
 }
 

@@ -29,6 +29,7 @@ int Main(int argc, char** argv) {
   app.formatter(HelpFormatter());
   int exit_code = kPass;
   AddRun(app, exit_code);
+  AddSweep(app, exit_code);
   AddDrive(app, exit_code);
   AddEmulate(app, exit_code);
   AddCamera(app, exit_code);

@@ -1,0 +1,46 @@
+// A sweep's table: a row for each setting, with what its runs tell of it and the limits that they keep or miss.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/sweep/outcome.h"
+#include "tools/sweep/statistics.h"
+#include "tools/sweep/sweep_file.h"
+
+namespace merlin {
+
+struct LimitOutcome {
+  std::string name;               // of SweepLimits
+  std::optional<double> value{};  // none: not known, which misses
+  double limit = 0.0;
+  bool kept = false;
+};
+
+struct SweepFigures {
+  std::string name;
+  int runs = 0, passed = 0, completed = 0;
+  std::optional<Spread> ate_m{}, size_percent{}, walls_m{};  // of completed runs
+  std::vector<LimitOutcome> limits{};
+  std::vector<double> all_ate_m{};  // of completed runs, for the picture
+};
+
+struct SweepTable {
+  std::string name;
+  std::vector<SweepFigures> rows{};     // those that were run; then "all" of them together
+  std::vector<std::string> failures{};  // "S3 seed 2: why", of runs that did not pass
+
+  bool MissesALimit() const;
+};
+
+// outcomes: of sweep.runs, in their order.
+SweepTable MakeTable(const std::string& name, const Sweep& sweep, std::span<const SweepOutcome> outcomes);
+
+std::string ToMarkdown(const SweepTable& table);
+std::string ToCsv(const SweepTable& table);                                         // a line a row
+std::string RunsToCsv(const Sweep& sweep, std::span<const SweepOutcome> outcomes);  // a line a run
+std::string ToPng(const SweepTable& table);                                         // a row a row; ATE logarithmic
+
+}  // namespace merlin
