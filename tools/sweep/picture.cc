@@ -11,8 +11,8 @@ namespace merlin {
 namespace {
 
 constexpr double kWidth_px = 1400, kRow_px = 26, kHeader_px = 96, kFooter_px = 70;
-constexpr double kLeft_px = 430, kRight_px = 1360;  // of the plot
-constexpr double kLow_m = 0.01, kHigh_m = 10.0;
+constexpr double kLeft_px = 450, kRight_px = 1360;  // of the plot
+constexpr double kLow_m = 0.005, kHigh_m = 5.0;
 const cv::Scalar kGrid(225, 225, 225), kGood(80, 140, 40), kBad(50, 50, 200), kDot(190, 140, 80), kLimit(60, 160, 230);
 
 double X_px(double ate_m) {
@@ -21,7 +21,7 @@ double X_px(double ate_m) {
 }
 
 void DrawAxis(Canvas& canvas, double bottom_px) {
-  for (const double tick_m : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0}) {
+  for (const double tick_m : {0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0}) {
     canvas.Line({{X_px(tick_m), kHeader_px - 8}, {X_px(tick_m), bottom_px}}, 1.0, kGrid);
     canvas.Text({X_px(tick_m), kHeader_px - 14}, fmt::format("{:g} m", tick_m), 9, kInk, TextAlign::kMiddle);
   }

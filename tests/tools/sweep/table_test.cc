@@ -11,10 +11,21 @@ SweepOutcome Passed(double ate_m) { return {.passed = true, .completed = true, .
 
 Sweep TwoRows() {
   Sweep sweep;
-  sweep.rows = {
-      {.name = "base", .limits = {.pass_share_min = 0.5, .ate_median_m_max = 0.05}},
-      {.name = "other", .limits = {.ate_worst_m_max = 0.1, .ate_median_ratio_max = 1.2}, .compared_with = "base"}};
-  for (const std::size_t row : {0u, 0u, 0u, 1u, 1u}) sweep.runs.push_back({.row = row, .seed = sweep.runs.size()});
+  SweepRow base, other;
+  base.name = "base";
+  base.limits.pass_share_min = 0.5;
+  base.limits.ate_median_m_max = 0.05;
+  other.name = "other";
+  other.compared_with = "base";
+  other.limits.ate_worst_m_max = 0.1;
+  other.limits.ate_median_ratio_max = 1.2;
+  sweep.rows = {base, other};
+  for (const std::size_t row : {0u, 0u, 0u, 1u, 1u}) {
+    SweepRun run;
+    run.row = row;
+    run.seed = sweep.runs.size();
+    sweep.runs.push_back(run);
+  }
   return sweep;
 }
 
