@@ -26,6 +26,8 @@ const char* Sentence(Activity activity) {
       return "waits for an obstacle";
     case Activity::kWaitsForFreeGround:
       return "stands: it knows no free ground behind it";
+    case Activity::kSeesTooLittle:
+      return "stands: it sees too little to begin a map";
   }
   return "";
 }

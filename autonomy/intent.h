@@ -24,6 +24,7 @@ enum class Activity {
   kIsLost,              // too many frames in a row did not fit the map
   kWaitsForObstacle,    // something ahead is too near
   kWaitsForFreeGround,  // the map does not know the ground behind the car to be free
+  kSeesTooLittle,       // no frame had points enough to begin a map
 };
 
 // "follows the corridor", "turns left", ...: the usual sentence, of which the car is the subject.

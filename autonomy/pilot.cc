@@ -11,7 +11,8 @@
 namespace merlin {
 namespace {
 
-constexpr double kArc_m = 4.0;  // of the arc that is checked where the behaviour gives no path
+constexpr double kBack_m_s = 0.2;  // out of a place where the car is stuck
+constexpr double kArc_m = 4.0;     // of the arc that is checked where the behaviour gives no path
 
 Behavior MakeBehavior(const Task& task, const BehaviorConfig& config) {
   const BehaviorInfo* const info = FindBehavior(task.behavior);
@@ -29,14 +30,30 @@ Pilot::Pilot(const CarDescription& car, Behavior behavior, const PilotConfig& co
       footprint_(FootprintOf(car)),
       behavior_(std::move(behavior)),
       config_(config),
-      avoid_(footprint_, config.avoid) {}
+      avoid_(footprint_, config.avoid),
+      unstick_(config.unstick) {}
 
 Decision Pilot::Decide(const Situation& situation) {
+  Decision decision = DecideByTask(situation);
+  unstick_.Watch(situation, decision.activity);
+  if (unstick_.backs()) {
+    Decision back =
+        Drive(situation, {.direction = Direction::kBackwards, .speed_m_s = kBack_m_s, .activity = Activity::kBacks});
+    back.doing = decision.doing + ", and backs to see more";
+    if (back.command.speed_m_s < 0.0) return back;
+    unstick_.CannotBack();
+  }
+  if (unstick_.gives_up()) decision.gives_up = WhyStuck(situation, decision.activity, free_m_, unstick_.waited_s());
+  return decision;
+}
+
+Decision Pilot::DecideByTask(const Situation& situation) {
   if (!situation.T_map_base) return Halt(Activity::kWaitsForHeading);
   Intent intent = behavior_(situation);
   if (intent.doing.empty()) intent.doing = Sentence(intent.activity);
   if (intent.done || intent.speed_m_s <= 0.0)
-    return {Command(0.0, intent.steering_rad), intent.done, intent.activity, intent.doing, intent.turntable_rad};
+    return {Command(0.0, intent.steering_rad), intent.done, intent.activity, intent.doing, {}, intent.turntable_rad};
+  if (!situation.has_map) return Halt(Activity::kSeesTooLittle);
   if (situation.lost_frames > config_.lost_frames_max) return Halt(Activity::kIsLost);
   return Drive(situation, intent);
 }
@@ -59,8 +76,12 @@ Decision Pilot::Drive(const Situation& situation, const Intent& intent) {
   double speed_m_s = std::min({intent.speed_m_s, limit_m_s, end_limit_m_s});
   if (speed_m_s < kCreep_m_s) speed_m_s = 0.0;
 
-  Decision decision{Command(backwards ? -speed_m_s : speed_m_s, pursuit.steering_rad), false, intent.activity,
-                    intent.doing, intent.turntable_rad};
+  Decision decision{Command(backwards ? -speed_m_s : speed_m_s, pursuit.steering_rad),
+                    false,
+                    intent.activity,
+                    intent.doing,
+                    {},
+                    intent.turntable_rad};
   if (limit_m_s < kCreep_m_s) {
     decision.activity = backwards ? Activity::kWaitsForFreeGround : Activity::kWaitsForObstacle;
     decision.doing = Sentence(decision.activity);
@@ -70,8 +91,10 @@ Decision Pilot::Drive(const Situation& situation, const Intent& intent) {
 
 // As fast as the obstacles ahead, or the free ground behind, allow.
 double Pilot::SpeedLimit_m_s(const Situation& situation, const Pursuit& pursuit, Direction direction) {
-  if (direction == Direction::kForwards)
-    return avoid_.SpeedLimit_m_s(avoid_.FreeDistance_m(situation.observation, pursuit.path_base));
+  if (direction == Direction::kForwards) {
+    free_m_ = avoid_.FreeDistance_m(situation.observation, pursuit.path_base);
+    return avoid_.SpeedLimit_m_s(free_m_);
+  }
   const auto free_m = FreeGround_m(situation.grid, footprint_, *situation.T_map_base, pursuit.path_base, config_.back);
   if (!free_m) return config_.back.speed_max_m_s;
   return std::min(config_.back.speed_max_m_s, SpeedToStopWithin_m_s(*free_m, config_.avoid.deceleration_m_s2));

@@ -3,7 +3,8 @@
 //
 //   Situation -> gates -> behaviour -> Intent -> pursuit -> obstacles or free ground -> Decision
 //
-// The gates: without a pose the behaviour is not asked; while the car is lost, or when the task is done, it stands.
+// The gates: without a pose the behaviour is not asked; without a map, while the car is lost, or when the task is done, it
+// stands. It never stands for good: see unstick.h.
 // Forwards the pilot drives as fast as the depth camera shows free distance ahead (avoid.h); backwards slowly, and only
 // over ground that the map knows to be free (free_ground.h).
 #pragma once
@@ -20,6 +21,7 @@
 #include "autonomy/pursue.h"
 #include "autonomy/situation.h"
 #include "autonomy/task.h"
+#include "autonomy/unstick.h"
 #include "robot/types/measurements.h"
 
 namespace merlin {
@@ -31,6 +33,7 @@ struct PilotConfig {
   int lost_frames_max = 20;  // [1, 1000] frames in a row that do not fit the map; then the car stands until one fits
   AvoidConfig avoid{};
   BackConfig back{};
+  UnstickConfig unstick{};
   EnergyConfig energy{};
   ArbitrateConfig arbitrate{};
 };
@@ -43,6 +46,7 @@ void Visit(Visitor& v, PilotConfig& c) {
   v("lost_frames_max", c.lost_frames_max, {1.0, 1000.0});
   v("avoid", c.avoid);
   v("back", c.back);
+  v("unstick", c.unstick);
   v("energy", c.energy);
   v("arbitrate", c.arbitrate);
 }
@@ -52,6 +56,7 @@ struct Decision {
   bool done = false;     // the task is finished; the command is to stand
   Activity activity = Activity::kIsDone;
   std::string doing;                      // the same for people: "follows the corridor", "waits for an obstacle", ...
+  std::string gives_up{};                 // not empty: why the run should end, since the car does not get on
   std::optional<double> turntable_rad{};  // where the turntable is to turn, from its start; none: nothing new
 };
 
@@ -65,6 +70,7 @@ class Pilot {
   Decision Decide(const Situation& situation);
 
  private:
+  Decision DecideByTask(const Situation& situation);
   Decision Halt(Activity activity) const;
   Decision Drive(const Situation& situation, const Intent& intent);
   double SpeedLimit_m_s(const Situation& situation, const Pursuit& pursuit, Direction direction);
@@ -75,6 +81,8 @@ class Pilot {
   Behavior behavior_;
   PilotConfig config_;
   Avoid avoid_;
+  Unstick unstick_;
+  std::optional<double> free_m_;  // ahead, as far as known at the newest decision
 };
 
 }  // namespace merlin

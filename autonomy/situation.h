@@ -23,7 +23,9 @@ struct Situation {
   const VoxelMap& local_map;       // surfaces near the car, in the map frame
   const OccupancyGrid& grid;       // free, occupied and unknown ground, in the map frame
   int lost_frames = 0;             // frames in a row that did not fit the map: the pose is by odometry alone
-  bool taken_over = false;         // somebody else has driven since the last decision: plans made before are outdated
+  bool has_map = true;             // mapping has begun: some frame had points enough
+  bool holds_position = true;  // what the newest frame saw holds the position on the floor: it sees more than a floor
+  bool taken_over = false;     // somebody else has driven since the last decision: plans made before are outdated
 };
 
 }  // namespace merlin

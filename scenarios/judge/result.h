@@ -22,7 +22,7 @@ struct RunResult {
   std::uint64_t seed = 0;
   Verdict verdict = Verdict::kFail;
   std::string
-      fault{};  // what ended the run before its time, but not an interruption: a lost device, an empty battery; else empty
+      fault{};  // what ended the run before its time, but not an interruption: a lost device, an empty battery, a car that does not get on; else empty
   std::vector<Check> checks{};
   Metrics metrics{};
   Hashes hashes{};

@@ -8,6 +8,7 @@
 #include "robot/base/error.h"
 #include "robot/kinematics/ackermann.h"
 #include "robot/kinematics/motion.h"
+#include "slam/register/undetermined.h"
 
 namespace merlin {
 namespace {
@@ -84,6 +85,8 @@ void DriveLoop::Decide(const DepthFrame& frame) {
                                      .local_map = slam_.local_map(),
                                      .grid = slam_.occupancy(),
                                      .lost_frames = slam_.lost_frames(),
+                                     .has_map = !slam_.keyframes().empty(),
+                                     .holds_position = slam_.last().level_share >= kHeldShareMin,
                                      .taken_over = before == Driver::kManual || before == Driver::kObstacleStop});
   if (energy_.level() == EnergyLevel::kLow) decision.doing += "; battery low";
   stack_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
@@ -163,6 +166,7 @@ LoopEnd DriveLoop::Drive(const std::atomic<bool>& stop, const LoopObserver& obse
     if (state_.manual.quit) return LoopEnd::kQuit;
     if (!manual && state_.decision && state_.decision->done) return LoopEnd::kTaskDone;
     if (stop.load()) return LoopEnd::kInterrupted;
+    if (!manual && state_.decision && !state_.decision->gives_up.empty()) return LoopEnd::kGivesUp;
     if (!manual && state_.energy == EnergyLevel::kEmpty) return LoopEnd::kBatteryEmpty;
     if (!state_.stop.empty()) return LoopEnd::kDeviceLost;
   }

@@ -121,6 +121,7 @@ class Session {
       const std::string complaints = Joined(plug_.Complaints());
       return loop_.state().stop + (complaints.empty() ? "" : " (" + complaints + ")");
     }
+    if (end == LoopEnd::kGivesUp) return loop_.state().decision->gives_up;
     if (end == LoopEnd::kBatteryEmpty)
       return fmt::format("the battery is empty: {:.2f} V without the motor, and the car stops below {:.2f} V",
                          loop_.energy().rest_v().value_or(0.0), loop_.energy().stop_v());

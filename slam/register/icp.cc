@@ -65,6 +65,13 @@ NormalEquations Linearize(std::span<const Source> points, NearestSearch& search,
   return equations;
 }
 
+double LevelShare(const Matrix6d& H) {
+  const Eigen::Matrix2d level = H.topLeftCorner<2, 2>();
+  const double half = 0.5 * level.trace();  // the larger eigenvalue of a symmetric 2x2 matrix
+  const double best = half + std::sqrt(std::max(0.0, half * half - level.determinant()));
+  return best / H(2, 2);
+}
+
 }  // namespace
 
 RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3f& origin_base, const VoxelMap& map,
@@ -81,6 +88,7 @@ RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3
     if (equations.inliers < config.inliers_min) return result;
     result.inlier_share = static_cast<double>(equations.inliers) / equations.pairs;
     result.rms_m = std::sqrt(equations.squares_m2 / equations.inliers);
+    result.level_share = LevelShare(equations.H);
     equations.H += prior.information;
     equations.b += prior.information * Log(prior.T_map_base.inverse() * result.T_map_base);
     const Eigen::LDLT<Matrix6d> solver(equations.H);

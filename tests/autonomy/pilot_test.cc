@@ -135,7 +135,7 @@ TEST(Pilot, TurnsAroundACornerToEitherSide) {
 TEST(Pilot, StopsBeforeTheWallOfADeadEnd) {
   DriveInWalls drive(DeadEnd(0.0));  // its wall is at x = 4, the bumper 0.45 m ahead of the base
   Pilot pilot(Car(), Task{}, {});
-  EXPECT_EQ(drive.Drive(pilot, 300), (Activities{Activity::kFollowsCorridor, Activity::kWaitsForObstacle}));
+  EXPECT_EQ(drive.Drive(pilot, 240), (Activities{Activity::kFollowsCorridor, Activity::kWaitsForObstacle}));
   const double gap_m = 4.0 - 0.45 - drive.car.x_m;
   EXPECT_GE(gap_m, AvoidConfig{}.stop_gap_m - 0.05);
   EXPECT_LE(gap_m, AvoidConfig{}.stop_gap_m + 0.05);
