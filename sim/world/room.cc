@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <regex>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +43,20 @@ void DrawCurtain(mjSpec* spec, const std::filesystem::path& room, bool closed) {
   if (closed) return;
   for (mjsElement* geom : curtain)
     if (mjs_delete(spec, geom) != 0) throw std::runtime_error(std::string("MuJoCo: ") + mjs_getError(spec));
+}
+
+// A room that includes another says in the text leave_out which of its geoms it does not have.
+void LeaveOut(mjSpec* spec, const std::filesystem::path& room) {
+  mjsElement* const text = mjs_findElement(spec, mjOBJ_TEXT, "leave_out");
+  if (text == nullptr) return;
+  std::istringstream names(mjs_getString(mjs_asText(text)->data));
+  for (std::string name; names >> name;) {
+    mjsElement* const geom = mjs_findElement(spec, mjOBJ_GEOM, name.c_str());
+    if (geom == nullptr)
+      throw InputError(room.string(), "the text leave_out names a geom that is not there", "names of geoms",
+                       "'" + name + "'");
+    if (mjs_delete(spec, geom) != 0) throw std::runtime_error(std::string("MuJoCo: ") + mjs_getError(spec));
+  }
 }
 
 // Arena, contacts and constraints as many as it takes.
@@ -86,6 +102,7 @@ SpecPtr ReadRoom(const std::filesystem::path& room, bool curtain_closed) {
   SpecPtr spec(mj_parseXML(room.c_str(), nullptr, error, sizeof error), mj_deleteSpec);
   if (!spec) throw RoomError(room, "not a room (MJCF)", error);
   DrawCurtain(spec.get(), room, curtain_closed);
+  LeaveOut(spec.get(), room);
   return spec;
 }
 

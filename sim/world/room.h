@@ -18,8 +18,9 @@ void SilenceMujoco();
 InputError RoomError(const std::filesystem::path& room, const std::string& what, const std::string& mujoco_message);
 
 // Parsed, not compiled. Geoms named "curtain*" stay where the room has them, or are taken out: an open curtain stops
-// neither camera nor sun. Silences MuJoCo. Throws InputError: no such file, no MJCF, a curtain to close where
-// there is none.
+// neither camera nor sun. Geoms that the text "leave_out" names are taken out: so a room can include another one and change
+// a part of it. Silences MuJoCo. Throws InputError: no such file, no MJCF, a curtain to close where there is none, a geom to
+// leave out that is not there.
 SpecPtr ReadRoom(const std::filesystem::path& room, bool curtain_closed);
 
 // The room compiled for itself, as its own compiler options say, with geoms and bodies in the order of ReadRoom's spec; its

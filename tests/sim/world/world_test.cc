@@ -313,6 +313,22 @@ TEST(World, RefusesToCloseACurtainThatIsNotThere) {
   ExpectSays(ErrorOf([&] { WithCurtain(file.path(), true); }), {"room.xml", "no curtain to close", "curtain*"});
 }
 
+TEST(World, LeavesOutWhatItsRoomLeavesOutOfTheOneItIncludes) {
+  constexpr char kWalls[] = R"(<geom name="floor" type="plane" size="0 0 1"/>
+    <geom name="wall_a" type="box" pos="5 0 1" size=".1 1 1"/> <geom name="wall_b" type="box" pos="8 0 1" size=".1 1 1"/>)";
+  const TemporaryFile whole("whole.xml", Room(kWalls));
+  const auto with = [&](const std::string& left_out) {
+    return fmt::format(R"(<mujoco><include file="{}"/><custom><text name="leave_out" data="{}"/></custom></mujoco>)",
+                       whole.path().string(), left_out);
+  };
+  const TemporaryFile part("part.xml", with("wall_a"));
+  const auto world = WithCurtain(part.path(), false);
+  EXPECT_LT(mj_name2id(world->model(), mjOBJ_GEOM, "wall_a"), 0);
+  EXPECT_GE(mj_name2id(world->model(), mjOBJ_GEOM, "wall_b"), 0);
+  const TemporaryFile wrong("wrong.xml", with("wall_b wall_c"));
+  ExpectSays(ErrorOf([&] { WithCurtain(wrong.path(), false); }), {"wrong.xml", "leave_out", "'wall_c'"});
+}
+
 TEST(Room7x10, StandsOnItsPlan) {
   const auto world = WithCurtain(kRoom7x10, false);
   const std::vector<Eigen::Vector2d>& plan = world->plan_xy_m();
