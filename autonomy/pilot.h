@@ -3,8 +3,8 @@
 //
 //   Situation -> gates -> behaviour -> Intent -> pursuit -> obstacles or free ground -> Decision
 //
-// The gates: without a pose the behaviour is not asked; without a map, while the car is lost, or when the task is done, it
-// stands. It never stands for good: see unstick.h.
+// The gates: without a pose the behaviour is not asked; without a map, while the car is lost, or when the task is done,
+// the car stands. It does not stand for good: see unstick.h.
 // Forwards the pilot drives as fast as the depth camera shows free distance ahead (avoid.h); backwards slowly, and only
 // over ground that the map knows to be free (free_ground.h).
 #pragma once

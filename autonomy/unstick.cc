@@ -112,7 +112,8 @@ void Unstick::Watch(const Situation& situation, Activity activity) {
   }
 }
 
-// A car that is lost, maps on, and is lost again moves, and gets nowhere: time with a hold only takes back as much without.
+// A car may be lost, map on, and be lost again: it moves and gets nowhere. So time with a hold only takes back as much time
+// without one.
 void Unstick::WatchHold(const Situation& situation, Activity activity, double step_s) {
   if (situation.taken_over || !(Drives(activity) || Waits(activity))) unheld_s_ = 0.0;
   const bool unheld = situation.lost_frames > kBlip_frames || !situation.holds_position;

@@ -1,13 +1,14 @@
-// Never to stand for good: watches for a car that waits, is lost or has nothing to hold on to, and says when to help it.
+// Keeps the car from standing for good: watches for a car that waits, is lost or has nothing to hold on to, and says when
+// to help it.
 //
 //   waits or is lost for back_after_s  ->  it backs a little once, over ground that is known to be free
 //   waits or is lost for end_after_s   ->  the run ends, with the reason
 //   has nothing to hold on to for longer than it had a hold, by end_after_s  ->  the same
 //   drives on, away_m from there       ->  all is forgotten
 //
-// Backing gives the camera another view of what was too near to measure, or of a place that did not fit the map. Only time
-// in which the car waits counts, and never that of a task that is done, of the turntable, of an operator, or while mapping
-// waits for the heading.
+// Backing gives the camera another view of what was too near to measure, or of a place that did not fit the map. Only
+// the time in which the car waits counts. Nothing counts while a task is done, on the turntable, while an operator drives,
+// or while mapping waits for the heading.
 #pragma once
 
 #include <optional>
@@ -59,8 +60,8 @@ class Unstick {
   double waited_s_ = 0.0, unheld_s_ = 0.0;
 };
 
-// Why the car waits, for people: "an obstacle 0.42 m ahead", "97 % of the depth camera's pixels are saturated", ... It has
-// waited for so long, or has driven for so long without a hold. free_m: distance to what is ahead, as far as known.
+// Why the car waits, for people: "an obstacle is 0.42 m ahead", "97 % of the depth camera's pixels are saturated", ...
+// free_m: distance to what is ahead, as far as known. waited_s: how long the car has waited.
 std::string WhyStuck(const Situation& situation, Activity activity, std::optional<double> free_m, double waited_s);
 
 }  // namespace merlin

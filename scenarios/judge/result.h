@@ -21,8 +21,9 @@ struct RunResult {
   std::string scenario{};
   std::uint64_t seed = 0;
   Verdict verdict = Verdict::kFail;
-  std::string
-      fault{};  // what ended the run before its time, but not an interruption: a lost device, an empty battery, a car that does not get on; else empty
+  // What ended the run before its time, but not an interruption: a lost device, an empty battery, a car that does not get
+  // on; else empty.
+  std::string fault{};
   std::vector<Check> checks{};
   Metrics metrics{};
   Hashes hashes{};
