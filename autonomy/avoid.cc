@@ -7,13 +7,26 @@
 
 namespace merlin {
 
-std::optional<double> Avoid::SeenNow_m(const Observation& observation,
-                                       std::span<const Eigen::Vector2d> path_base) const {
+namespace {
+
+// What is left of the free distance, once the car has driven on.
+std::optional<double> Remaining_m(std::optional<double> free_m, const Pose& T_odom_then, const Pose& T_odom_now) {
+  if (!free_m) return std::nullopt;
+  return std::max(0.0, *free_m - (T_odom_then.inverse() * T_odom_now).translation().norm());
+}
+
+}  // namespace
+
+bool Avoid::SaturatesAhead(const Observation& observation) const {
   const auto ahead = [this](const Eigen::Vector3f& d) {
     return std::abs(std::atan2(d.y(), d.x())) < config_.saturated_half_angle_rad;
   };
-  if (std::ranges::count_if(observation.saturated_base, ahead) >= config_.saturated_min) return 0.0;
+  const auto count = std::ranges::count_if(observation.saturated_base, ahead);
+  return count > 0 && static_cast<double>(count) * observation.pixel_sr >= config_.saturated_min_sr;
+}
 
+std::optional<double> Avoid::SeenNow_m(const Observation& observation,
+                                       std::span<const Eigen::Vector2d> path_base) const {
   std::vector<double> obstacles_m;
   for (const Point& point : observation.points_base) {
     if (point.position.z() < config_.height_min_m || point.position.z() > config_.height_max_m) continue;
@@ -46,13 +59,26 @@ std::optional<double> Avoid::DistanceUntilTouch_m(const Eigen::Vector2d& point_b
 std::optional<double> Avoid::FreeDistance_m(const Observation& observation,
                                             std::span<const Eigen::Vector2d> path_base) {
   if (std::abs(observation.view_yaw_rad) > config_.aside_max_rad) return 0.0;
-  const std::optional<double> free_m = SeenNow_m(observation, path_base);
-  if (!free_m && last_ && Seconds(observation.stamp - last_->stamp) <= config_.hold_s) {
-    const double driven_m = (last_->T_odom_base.inverse() * observation.T_odom_base).translation().norm();
-    return std::max(0.0, last_->free_m - driven_m);
-  }
-  if (free_m) last_ = Memory{observation.stamp, observation.T_odom_base, *free_m};
+  std::optional<double> free_m = SeenNow_m(observation, path_base);
+  if (SaturatesAhead(observation)) return WhileSaturated_m(observation, free_m);
+  if (free_m)
+    last_ = Memory{observation.stamp, observation.T_odom_base, free_m};
+  else if (Holds(last_, observation.stamp))
+    free_m = Remaining_m(last_->free_m, last_->T_odom_base, observation.T_odom_base);
+  measured_ = Memory{observation.stamp, observation.T_odom_base, free_m};
   return free_m;
+}
+
+bool Avoid::Holds(const std::optional<Memory>& memory, Time now) const {
+  return memory && Seconds(now - memory->stamp) <= config_.hold_s;
+}
+
+// The nearer of what this frame sees and what the last one without saturated pixels saw.
+std::optional<double> Avoid::WhileSaturated_m(const Observation& observation, std::optional<double> seen_m) const {
+  if (observation.shortest_exposure || !Holds(measured_, observation.stamp)) return 0.0;
+  const auto left_m = Remaining_m(measured_->free_m, measured_->T_odom_base, observation.T_odom_base);
+  if (!left_m || !seen_m) return left_m ? left_m : seen_m;
+  return std::min(*left_m, *seen_m);
 }
 
 double Avoid::SpeedLimit_m_s(std::optional<double> free_m) const {

@@ -3,7 +3,9 @@
 //
 // The footprint of the car, widened by a margin, is moved along the path. Every point between the floor and the top of the
 // car that it would touch is an obstacle; a few points are taken for noise. An obstacle that drops out of sight is
-// remembered for a moment. Nothing is known of what is behind the car or beside it: the camera looks ahead.
+// remembered for a moment. Saturated pixels tell no distance: what a shorter exposure measured just before counts
+// (perception/exposure_control.h). Without one they count as something very close. Nothing is known of what is behind
+// the car or beside it: the camera looks ahead.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +27,7 @@ struct AvoidConfig {
   double stop_gap_m = 0.5;                 // [0.05, 5] the car stands with at least this free before its front
   double deceleration_m_s2 = 0.5;          // [0.05, 5] braking it plans with; the car can do 2
   double hold_s = 0.5;                     // [0, 10] an obstacle that drops out of sight is believed this long
-  int saturated_min = 30;                  // [1, 1e5] so many saturated pixels straight ahead mean something close
+  double saturated_min_sr = 0.0035;        // [0, 1] so much straight ahead that saturates is something: 6 cm at 1 m
   double saturated_half_angle_rad = 0.15;  // [0, 1.6] what counts as straight ahead
   double aside_max_rad = 0.2;  // [0, 1.6] a camera turned farther to a side does not see the path; half its view
 };
@@ -39,7 +41,7 @@ void Visit(Visitor& v, AvoidConfig& c) {
   v("stop_gap_m", c.stop_gap_m, {0.05, 5.0});
   v("deceleration_m_s2", c.deceleration_m_s2, {0.05, 5.0});
   v("hold_s", c.hold_s, {0.0, 10.0});
-  v("saturated_min", c.saturated_min, {1.0, 1e5});
+  v("saturated_min_sr", c.saturated_min_sr, {0.0, 1.0});
   v("saturated_half_angle_rad", c.saturated_half_angle_rad, {0.0, 1.6});
   v("aside_max_rad", c.aside_max_rad, {0.0, 1.6});
 }
@@ -53,7 +55,8 @@ class Avoid {
 
   // The length of the path that the car can drive until its footprint, turned along the path, touches something.
   // path_base: positions of the base's origin, in the base frame and in driving order, from the present one on.
-  // Nothing: no obstacle is seen on the path. Zero: something is too close to measure, or the camera looks aside.
+  // Nothing: no obstacle is seen on the path. Zero: the camera looks aside, or something is too close to measure: it
+  // saturates the shortest exposure, or no exposure within hold_s measured it.
   std::optional<double> FreeDistance_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base);
 
   // The highest speed from which the car, braking as planned, still stands stop_gap_m before the obstacle. Infinite without
@@ -61,20 +64,24 @@ class Avoid {
   double SpeedLimit_m_s(std::optional<double> free_m) const;
 
  private:
+  bool SaturatesAhead(const Observation& observation) const;
   std::optional<double> SeenNow_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base) const;
   std::optional<double> DistanceUntilTouch_m(const Eigen::Vector2d& point_base,
                                              std::span<const Eigen::Vector2d> path_base) const;
 
-  // The free distance as last seen, and where.
+  // A free distance as it was seen, and where. Nothing: no obstacle.
   struct Memory {
     Time stamp;
     Pose T_odom_base;
-    double free_m;
+    std::optional<double> free_m;
   };
+  bool Holds(const std::optional<Memory>& memory, Time now) const;
+  std::optional<double> WhileSaturated_m(const Observation& observation, std::optional<double> seen_m) const;
 
   Footprint footprint_;
   AvoidConfig config_;
-  std::optional<Memory> last_;
+  std::optional<Memory> last_;      // obstacle
+  std::optional<Memory> measured_;  // the last look ahead in which nothing saturated
 };
 
 }  // namespace merlin

@@ -27,13 +27,29 @@ std::optional<double> MeanAmplitude_e(const DepthFrame& frame, double saturated_
   return sum_e / static_cast<double>(count);
 }
 
+// Within the data sheet's range; all sub-frames end within one period.
+double Fitting_s(double integration_s, const DepthCameraSheet& sheet, const DepthSettings& settings, double rate_hz) {
+  const double fits_s = 1.0 / (rate_hz * settings.sub_frames()) - sheet.readout_s;
+  const double longest_s = std::clamp(fits_s, sheet.integration_min_s, sheet.integration_max_s);
+  return std::clamp(integration_s, sheet.integration_min_s, longest_s);
+}
+
 }  // namespace
+
+double FullAmplitude_e(const DepthCameraSheet& sheet, double frequency_hz) {
+  const double contrast = sheet.Contrast(frequency_hz);
+  return 2.0 * contrast / (1.0 + contrast) * sheet.full_well_e;
+}
+
+double StartIntegration_s(const DepthCameraSheet& sheet, const DepthSettings& settings, double rate_hz) {
+  constexpr double kAlbedo = 0.8, kRange_m = 1.0;
+  const double per_s_e = sheet.LampAmplitude_e_m2(settings) / settings.integration_s * kAlbedo / (kRange_m * kRange_m);
+  return Fitting_s(FullAmplitude_e(sheet, settings.frequency_hz) / per_s_e, sheet, settings, rate_hz);
+}
 
 DepthSettings Adapt(const DepthFrame& frame, const DepthCameraSheet& sheet, double rate_hz,
                     const IntegrationConfig& config) {
-  // The fuller tap holds (1 + C) N / 2, the amplitude is C N.
-  const double contrast = sheet.Contrast(frame.settings.frequency_hz);
-  const double full_e = 2.0 * contrast / (1.0 + contrast) * sheet.full_well_e;
+  const double full_e = FullAmplitude_e(sheet, frame.settings.frequency_hz);
   DepthSettings settings = frame.settings;
   const auto mean_e = MeanAmplitude_e(frame, config.saturated_weight * full_e);
   if (!mean_e) return settings;
@@ -42,9 +58,7 @@ DepthSettings Adapt(const DepthFrame& frame, const DepthCameraSheet& sheet, doub
   const double dev = std::clamp((target_e - *mean_e) / target_e, -config.step_max, config.step_max);
   if (std::abs(dev) >= config.dead_band) settings.integration_s *= 1.0 + dev;
 
-  const double fits_s = 1.0 / (rate_hz * settings.sub_frames()) - sheet.readout_s;
-  const double longest_s = std::clamp(fits_s, sheet.integration_min_s, sheet.integration_max_s);
-  settings.integration_s = std::clamp(settings.integration_s, sheet.integration_min_s, longest_s);
+  settings.integration_s = Fitting_s(settings.integration_s, sheet, settings, rate_hz);
   return settings;
 }
 

@@ -34,6 +34,9 @@ struct Observation {
   // something very dark. saturated_base: unit directions in which something is close, at an unknown range.
   // unknown_base: unit directions of all others.
   std::vector<Eigen::Vector3f> free_base, saturated_base, unknown_base;
+  double pixel_sr = 0.0;  // solid angle of one pixel; 0: not known
+  // False: a shorter exposure can still measure what saturates in this one.
+  bool shortest_exposure = true;
   std::array<int, static_cast<std::size_t>(Rejection::kCount)> rejections{};
   Pose T_odom_base = Pose::Identity();  // wheel odometry since the start
   double yaw_rad = 0.0;                 // heading by compass and wheels, in the world

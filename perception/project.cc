@@ -53,6 +53,8 @@ void ProjectDepth(const FilteredDepth& depth, const DepthCameraSheet& sheet, con
   observation.free_base.clear();
   observation.saturated_base.clear();
   observation.unknown_base.clear();
+  observation.pixel_sr = 1.0 / (sheet.camera.fx_px * sheet.camera.fy_px);
+  observation.shortest_exposure = depth.frame.settings.integration_s <= sheet.integration_min_s;
   const RangeSigma sigma(sheet, depth.frame.settings);
   const FreeRange free_range(sheet, depth.frame.settings);
   for (std::size_t i = 0; i < depth.frame.size(); ++i) {

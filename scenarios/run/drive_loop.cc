@@ -33,7 +33,7 @@ Rig RigOf(const Robot& robot, const CarDescription& car) {
 DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception,
                      const SlamConfig& slam, const Task& task, const PilotConfig& pilot)
     : robot_(robot),
-      integration_(perception.integration),
+      exposure_(robot.depth->Info().sheet, robot.depth->Info().rate_hz, perception.integration),
       period_(FromSeconds(1.0 / robot.depth->Info().rate_hz)),
       pipeline_(RigOf(robot, car), perception),
       slam_(slam, FootprintOf(car)),
@@ -74,7 +74,7 @@ void DriveLoop::Follow(const DriveState& state) {
 
 void DriveLoop::Decide(const DepthFrame& frame) {
   const auto begin = std::chrono::steady_clock::now();
-  if (integration_.adapt) AdaptExposure(frame);
+  ChooseExposure(frame);
   auto observation = pipeline_.Process(frame);
   if (!observation) return;
   state_.T_map_base = slam_.Update(*observation);
@@ -124,11 +124,11 @@ void DriveLoop::Act() {
   UseDevice("turntable", [this] { robot_.turntable->Send(*state_.decision->turntable_rad); });
 }
 
-void DriveLoop::AdaptExposure(const DepthFrame& frame) {
-  const DepthCameraInfo& info = robot_.depth->Info();
-  const DepthSettings adapted = Adapt(frame, info.sheet, info.rate_hz, integration_);
-  if (adapted.integration_s != frame.settings.integration_s)
-    UseDevice("depth camera", [&] { robot_.depth->Configure(adapted); });
+void DriveLoop::ChooseExposure(const DepthFrame& frame) {
+  const DepthSettings next = exposure_.After(frame);
+  if (next.integration_s == integration_s_.value_or(frame.settings.integration_s)) return;
+  integration_s_ = next.integration_s;
+  UseDevice("depth camera", [&] { robot_.depth->Configure(next); });
 }
 
 // The stack means the angle of the wheels; the servo takes the angle that it will report. Nobody else converts.

@@ -11,6 +11,7 @@
 #include "autonomy/energy.h"
 #include "autonomy/pilot.h"
 #include "autonomy/supervise.h"
+#include "perception/exposure_control.h"
 #include "perception/pipeline.h"
 #include "robot/base/first_fault.h"
 #include "robot/hal/hal.h"
@@ -57,12 +58,13 @@ class DriveLoop {
   void Arbitrate(const ManualInput& manual);
   void Act();
   std::optional<DriveCommand> Advice() const;
-  void AdaptExposure(const DepthFrame& frame);
+  void ChooseExposure(const DepthFrame& frame);
   void Send(DriveCommand command);
   void Halt(FirstFault& faults);
 
   Robot robot_;
-  IntegrationConfig integration_;
+  ExposureControl exposure_;
+  std::optional<double> integration_s_;  // as last asked for; nothing: as the camera was set up
   Duration period_;
   Pipeline pipeline_;
   Slam slam_;

@@ -61,10 +61,65 @@ TEST(Avoid, DoesNotStopForThreePointsOfNoise) {
 
 TEST(Avoid, TakesManySaturatedPixelsAheadForSomethingClose) {
   Observation observation;
+  observation.pixel_sr = 1e-4;
+  observation.saturated_base.assign(30, Eigen::Vector3f::UnitX());  // 0.003 sr: a few
+  EXPECT_FALSE(Avoid(kCar, {}).FreeDistance_m(observation, Straight()));
   observation.saturated_base.assign(50, Eigen::Vector3f::UnitX());
   EXPECT_EQ(Avoid(kCar, {}).FreeDistance_m(observation, Straight()), 0.0);
   observation.saturated_base.assign(50, Eigen::Vector3f(0.8f, 0.6f, 0.0f));  // to the side
   EXPECT_FALSE(Avoid(kCar, {}).FreeDistance_m(observation, Straight()));
+}
+
+// A frame in which what is ahead saturates, and which a shorter exposure may follow.
+Observation Glare(double time_s, double driven_m) {
+  Observation observation;
+  observation.stamp = FromSeconds(time_s);
+  observation.T_odom_base = FromXyYaw(driven_m, 0.0, 0.0);
+  observation.pixel_sr = 1e-4;
+  observation.saturated_base.assign(50, Eigen::Vector3f::UnitX());
+  observation.shortest_exposure = false;
+  return observation;
+}
+
+TEST(Avoid, TakesWhatTheShortExposureMeasuredForWhatSaturatesInTheLongOne) {
+  Avoid avoid(kCar, {});
+  avoid.FreeDistance_m(Box(2.0, 0.0, 0.3, 0.0), Straight());
+  const auto free_m = avoid.FreeDistance_m(Glare(0.1, 0.15), Straight());
+  ASSERT_TRUE(free_m);
+  EXPECT_NEAR(*free_m, 2.0 - 0.45 - 0.15, 0.05);
+}
+
+TEST(Avoid, SeesAFreePathWhereTheShortExposureMeasuredNothingOnIt) {
+  Avoid avoid(kCar, {});
+  Observation clear;
+  avoid.FreeDistance_m(clear, Straight());
+  EXPECT_FALSE(avoid.FreeDistance_m(Glare(0.1, 0.0), Straight()));
+}
+
+TEST(Avoid, KeepsTheNearerOfBothExposures) {
+  Avoid avoid(kCar, {});
+  avoid.FreeDistance_m(Box(3.0, 0.0, 0.3, 0.0), Straight());
+  Observation both = Glare(0.1, 0.0);
+  both.points_base = Box(1.0, 0.0, 0.3).points_base;  // beside the glare
+  const auto free_m = avoid.FreeDistance_m(both, Straight());
+  ASSERT_TRUE(free_m);
+  EXPECT_NEAR(*free_m, 1.0 - 0.45, 0.05);
+}
+
+TEST(Avoid, StopsForWhatKeepsSaturatingUnmeasured) {
+  Avoid avoid(kCar, {});
+  EXPECT_EQ(avoid.FreeDistance_m(Glare(0.0, 0.0), Straight()), 0.0);  // nothing was measured before
+  avoid.FreeDistance_m(Box(3.0, 0.0, 0.3, 0.1), Straight());
+  EXPECT_GT(*avoid.FreeDistance_m(Glare(0.6, 0.0), Straight()), 2.0);
+  EXPECT_EQ(avoid.FreeDistance_m(Glare(0.7, 0.0), Straight()), 0.0);
+}
+
+TEST(Avoid, StopsAtOnceForWhatSaturatesInTheShortestExposure) {
+  Avoid avoid(kCar, {});
+  avoid.FreeDistance_m(Box(3.0, 0.0, 0.3, 0.0), Straight());
+  Observation glare = Glare(0.1, 0.0);
+  glare.shortest_exposure = true;
+  EXPECT_EQ(avoid.FreeDistance_m(glare, Straight()), 0.0);
 }
 
 TEST(Avoid, RemembersAnObstacleThatDropsOutOfSightForAMoment) {
