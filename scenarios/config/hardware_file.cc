@@ -24,7 +24,8 @@ HardwareCameras CamerasOf(const Scenario& scenario) {
   const DepthSensor& depth = scenario.sensors.depth;
   HardwareCameras cameras{
       .depth = {ReadDepthCameraSheet(DepthCameraFile(depth.camera)), car.T_base_depth, depth.rate_hz},
-      .depth_settings = SettingsOf(depth)};
+      .depth_settings = {}};
+  cameras.depth_settings = SettingsOf(depth, cameras.depth.sheet);
   cameras.depth.sheet.latency_s = depth.latency_s.value_or(cameras.depth.sheet.latency_s);
   if (const auto& color = scenario.sensors.color; color && car.T_base_color) {
     cameras.color = {ReadColorCameraSheet(ColorCameraFile(color->camera)), *car.T_base_color, color->rate_hz};
@@ -35,11 +36,13 @@ HardwareCameras CamerasOf(const Scenario& scenario) {
   return cameras;
 }
 
-DepthSettings SettingsOf(const DepthSensor& sensor) {
-  return {.integration_s = sensor.integration_us * 1e-6,
-          .frequency_hz = sensor.frequency_mhz * 1e6,
-          .second_frequency_hz = sensor.second_frequency_mhz * 1e6,
-          .post_processing = sensor.post_processing};
+DepthSettings SettingsOf(const DepthSensor& sensor, const DepthCameraSheet& sheet) {
+  DepthSettings settings{.frequency_hz = sensor.frequency_mhz * 1e6,
+                         .second_frequency_hz = sensor.second_frequency_mhz * 1e6,
+                         .post_processing = sensor.post_processing};
+  const std::optional<double> fixed_us = sensor.integration_us.us;
+  settings.integration_s = fixed_us ? *fixed_us * 1e-6 : StartIntegration_s(sheet, settings, sensor.rate_hz);
+  return settings;
 }
 
 }  // namespace merlin

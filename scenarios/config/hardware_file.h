@@ -19,7 +19,7 @@ std::string ToYaml(const HardwareConfig& config);
 // What the scenario says of the cameras, and where the car's description has them.
 HardwareCameras CamerasOf(const Scenario& scenario);
 
-// The depth camera's settings that a scenario asks for.
-DepthSettings SettingsOf(const DepthSensor& sensor);
+// The depth camera's settings that a scenario asks for; those to begin with where its integration time is automatic.
+DepthSettings SettingsOf(const DepthSensor& sensor, const DepthCameraSheet& sheet);
 
 }  // namespace merlin

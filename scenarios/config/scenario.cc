@@ -6,6 +6,7 @@
 #include "robot/base/yaml_reader.h"
 #include "robot/base/yaml_writer.h"
 #include "scenarios/config/checks_yaml.h"
+#include "scenarios/config/integration_yaml.h"
 #include "scenarios/config/names.h"
 
 namespace merlin {
@@ -34,6 +35,17 @@ void UseNewName(Scenario& scenario, const std::string& file, YamlFile& yaml) {
   }
 }
 
+// Of a key that has gone, the one that took its place.
+void RefuseFormerKey(YamlFile& yaml) {
+  YAML::Node node = YAML::Clone(yaml.root());
+  for (const char* key : {"perception", "integration", "adapt"}) {
+    if (!node.IsMap() || !node[key]) return;
+    node.reset(node[key]);
+  }
+  yaml.Fault("perception.integration.adapt", "is gone: write sensors.depth.integration_us: auto, or a number");
+  yaml.ThrowFaults();
+}
+
 // What no range of a single value says.
 void CheckRules(const Scenario& scenario, YamlFile& yaml) {
   if (scenario.curtain != "open" && scenario.curtain != "closed")
@@ -51,6 +63,7 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
   for (const std::string& text : overrides) yaml.Set(text);
   Scenario scenario;
   yaml.Require("", {"room"});
+  RefuseFormerKey(yaml);
   yaml.ReadInto(scenario);
   const auto anchor = [&](const char* field, std::string& named) {
     if (!yaml.IsSet(field)) Anchor(named, file.parent_path());
@@ -70,6 +83,7 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
   if (scenario.sensors.color) anchor("sensors.color.camera", scenario.sensors.color->camera);
   UseNewName(scenario, file.string(), yaml);
   CheckRules(scenario, yaml);
+  scenario.perception.integration.automatic = !scenario.sensors.depth.integration_us.us;
   yaml.ThrowFaults();
   return scenario;
 }

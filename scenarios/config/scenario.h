@@ -48,11 +48,16 @@ void Visit(Visitor& v, CarChoice& c) {
   v("calibration", c.calibration);
 }
 
+// Of one sub-frame. Nothing (`auto` in the file): the stack chooses it, frame by frame.
+struct IntegrationTime {
+  std::optional<double> us;
+};
+
 struct DepthSensor {
   std::string camera = "pmd_3k_s";  // models/cameras/<name>.yaml, or a path
   double rate_hz = 20.0;            // of the stack too; up to the sheet's
   std::string effects = "all";      // all, raw, ideal, or names
-  double integration_us = 1000.0;   // valid ones: the camera's sheet
+  IntegrationTime integration_us;   // auto, or a number; valid ones: the camera's sheet
   double frequency_mhz = 20.0;
   double second_frequency_mhz = 0.0;  // 0: none; another valid one: eight sub-frames, and a range that wraps later
   bool post_processing = false;       // the maker's own: low amplitudes masked, 3x3 median
@@ -64,7 +69,7 @@ void Visit(Visitor& v, DepthSensor& c) {
   v("camera", c.camera);
   v("rate_hz", c.rate_hz, {5.0, 500.0});
   v("effects", c.effects);
-  v("integration_us", c.integration_us, {1.0, 1e6});
+  v("integration_us", c.integration_us);
   v("frequency_mhz", c.frequency_mhz, {0.1, 1000.0});
   v("second_frequency_mhz", c.second_frequency_mhz, {0.0, 1000.0});
   v("post_processing", c.post_processing);

@@ -64,7 +64,8 @@ TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options) {
     twin.world.turntable_rate_rad_s = scenario.task.rate_deg_s * std::numbers::pi / 180.0;
   twin.seed = scenario.seed;
   const std::filesystem::path depth_file = DepthCameraFile(sensors.depth.camera);
-  twin.depth = {ReadDepthCameraSheet(depth_file), ReadDepthCameraErrors(depth_file), SettingsOf(sensors.depth),
+  const DepthCameraSheet sheet = ReadDepthCameraSheet(depth_file);
+  twin.depth = {sheet, ReadDepthCameraErrors(depth_file), SettingsOf(sensors.depth, sheet),
                 sim::ParseTofEffects(sensors.depth.effects), sensors.depth.rate_hz};
   RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz, twin.depth.sheet.rate_max_hz);
   RequireRate("sensors.depth.rate_hz", sensors.depth.rate_hz,

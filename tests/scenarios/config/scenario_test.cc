@@ -117,6 +117,34 @@ TEST(Scenario, KnowsAnOpenAndAClosedCurtain) {
   EXPECT_TRUE(Has(Complaint("room: hall\ncurtain: [open]\n"), "s.yaml:2: curtain: expected a text"));
 }
 
+TEST(Scenario, TakesAnIntegrationTimeOrLeavesItToTheStack) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "s.yaml";
+  std::ofstream(file) << "room: hall\nsensors: {depth: {integration_us: 700}}\n";
+  const Scenario fixed = ReadScenario(file.string(), {});
+  EXPECT_EQ(fixed.sensors.depth.integration_us.us, 700.0);
+  EXPECT_FALSE(fixed.perception.integration.automatic);
+  const Scenario automatic = ReadScenario(file.string(), {"sensors.depth.integration_us=auto"});
+  EXPECT_FALSE(automatic.sensors.depth.integration_us.us);
+  EXPECT_TRUE(automatic.perception.integration.automatic);
+  EXPECT_TRUE(Has(ToYaml(automatic), "integration_us: auto"));
+  std::ofstream(file) << "room: hall\n";
+  EXPECT_TRUE(ReadScenario(file.string(), {}).perception.integration.automatic);
+}
+
+TEST(Scenario, RefusesAnIntegrationTimeThatIsNone) {
+  const auto said = [](const std::string& time) {
+    return Complaint("room: hall\nsensors:\n  depth: {integration_us: " + time + "}\n");
+  };
+  for (const char* time : {"atuo", "[1000]", "0x"})
+    EXPECT_TRUE(Has(said(time), "s.yaml:3: sensors.depth.integration_us: expected auto, or a number of microseconds"))
+        << said(time);
+  for (const char* time : {"0", "-1000", ".nan", "1e7"})
+    EXPECT_TRUE(Has(said(time), "s.yaml:3: sensors.depth.integration_us: expected a number in")) << said(time);
+  EXPECT_TRUE(Has(Complaint("room: hall\nperception: {integration: {adapt: true}}\n"),
+                  "s.yaml:2: perception.integration.adapt: is gone: write sensors.depth.integration_us: auto"));
+}
+
 TEST(Scenario, FindsFilesBesideItselfFromAnyFolder) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "my_room.xml") << "<mujoco/>";
