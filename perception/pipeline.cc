@@ -51,7 +51,8 @@ std::optional<Observation> Pipeline::Process(DepthFrame frame) {
   observation.yaw_rad = heading_.Yaw_rad(Yaw(*T_odom_base));
   observation.yaw_sigma_rad = heading_.Sigma_rad(frame.stamp, Yaw(*T_odom_base));
 
-  const FilteredDepth filtered = FilterDepth(std::move(frame), rig_.depth, config_.filter);
+  const FilteredDepth filtered =
+      FilterDepth(std::move(frame), rig_.depth, config_.filter, FloorRanges_m(rays_, *T_base_depth));
   ProjectDepth(filtered, rig_.depth, rays_, *T_base_depth, observation);
 
   if (color_ && rig_.color && std::abs(Seconds(observation.stamp - color_->stamp)) <= config_.color_age_max_s) {

@@ -32,6 +32,18 @@ std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera) {
   return rays;
 }
 
+std::vector<float> FloorRanges_m(const std::vector<Eigen::Vector3f>& rays, const Pose& T_base_camera) {
+  const Eigen::Vector3f up_camera = T_base_camera.linear().row(2).cast<float>();
+  const float height_m = static_cast<float>(T_base_camera.translation().z());
+  std::vector<float> ranges_m;
+  ranges_m.reserve(rays.size());
+  for (const Eigen::Vector3f& ray : rays) {
+    const float up = up_camera.dot(ray);
+    ranges_m.push_back(up < 0.0f && height_m > 0.0f ? -height_m / up : HUGE_VALF);
+  }
+  return ranges_m;
+}
+
 namespace {
 
 // Some drivers flag a dark pixel as invalid too. The amplitude of a saturated or inconsistent pixel is no measure of

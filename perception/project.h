@@ -26,6 +26,9 @@ class RangeSigma {
 // Unit rays of all pixels in the optical frame, row by row.
 std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera);
 
+// The range [m] at which each ray meets the floor, which the base frame stands on; infinite for those that do not.
+std::vector<float> FloorRanges_m(const std::vector<Eigen::Vector3f>& rays, const Pose& T_base_camera);
+
 // The range [m] up to which a dark pixel shows free space: anything nearer with albedo times cos(incidence) >= 0.02
 // (black plastic at 60 deg) would have returned more light. At most the unambiguous range.
 class FreeRange {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "perception/filter/unwrap.h"
+
 namespace merlin {
 namespace {
 
@@ -35,6 +37,7 @@ FilteredDepth FilterDepth(DepthFrame frame, const DepthCameraSheet& sheet, const
   out.reasons.resize(frame.size());
   for (std::size_t i = 0; i < frame.size(); ++i)
     out.reasons[i] = ReasonOfPixel(frame, i, lamp, unambiguous_m, config.ghost_albedo);
+  UnwrapGhosts(frame, out.reasons, lamp, config);
 
   const std::vector<Rejection> first = out.reasons;
   std::vector<float> median_m = frame.range_m;
@@ -43,7 +46,7 @@ FilteredDepth FilterDepth(DepthFrame frame, const DepthCameraSheet& sheet, const
       const std::size_t i = static_cast<std::size_t>(v) * frame.width + u;
       if (first[i] != Rejection::kNone) continue;
       const float range_m = frame.range_m[i];
-      const double tolerance_m = std::max(config.agreement_floor_m, config.agreement_share * range_m);
+      const double tolerance_m = Agreement_m(range_m, config);
       std::array<float, 9> agreeing;
       int count = 0;
       for (int dv = -1; dv <= 1; ++dv) {

@@ -1,8 +1,9 @@
-// Decides which depth pixels can be trusted. First it takes the camera's flags, then it looks for ghosts (pixels whose
-// true range is beyond the unambiguous range), then for pixels that their neighbours contradict. Accepted ranges are
-// smoothed by a median. Every rejected pixel keeps its reason.
+// Decides which depth pixels can be trusted. First it takes the camera's flags, then it looks for ghosts: pixels whose
+// true range is beyond the unambiguous range (perception/filter/unwrap.h finds out about some). Then come pixels that
+// their neighbours contradict. Accepted ranges are smoothed by a median. Every rejected pixel keeps its reason.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -52,7 +53,13 @@ struct FilteredDepth {
 // angle of incidence, so very oblique dark surfaces are rejected too.
 bool IsGhost(double range_m, double amplitude_e, double lamp_amplitude_e_m2, double unambiguous_m, double ghost_albedo);
 
+// How far neighbours on one surface may lie apart [m].
+inline double Agreement_m(double range_m, const DepthFilterConfig& config) {
+  return std::max(config.agreement_floor_m, config.agreement_share * range_m);
+}
+
 // All steps in this order. The thesis (perception/pipeline.h) has amplitude, then median: eq. 4.6-4.8.
+// Accepted ranges may be longer than the unambiguous range.
 FilteredDepth FilterDepth(DepthFrame frame, const DepthCameraSheet& sheet, const DepthFilterConfig& config);
 
 }  // namespace merlin
