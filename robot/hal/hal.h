@@ -2,8 +2,6 @@
 // of these; the stack never meets anything else. No call blocks but Clock::WaitUntil; threads belong to the plugs.
 #pragma once
 
-#include <vector>
-
 #include "robot/hal/clock.h"
 #include "robot/hal/color_camera.h"
 #include "robot/hal/compass.h"
@@ -14,8 +12,7 @@
 namespace merlin {
 
 // A device the robot lacks is a null pointer. The plug that made them owns them and outlives this struct. The stack drives
-// by one camera of each kind; what a robot carries beyond these two is listed apart,
-// and not read by the stack yet.
+// by one camera of each kind.
 struct Robot {
   Clock* clock = nullptr;  // never null
   DepthCamera* depth = nullptr;
@@ -24,8 +21,6 @@ struct Robot {
   Drive* drive = nullptr;
   PanUnit* pan = nullptr;        // turns the cameras
   PanUnit* turntable = nullptr;  // turns the car that stands on it
-  std::vector<DepthCamera*> more_depth{};
-  std::vector<ColorCamera*> more_color{};
 };
 
 }  // namespace merlin
