@@ -9,10 +9,10 @@
 namespace merlin {
 namespace {
 
-constexpr double kRate_hz = 20.0;
+constexpr double kDepthRate_hz = 20.0;
 constexpr int kWidth = 40, kHeight = 10;
 
-DepthCameraSheet Sheet() {
+DepthCameraSheet BoxSheet() {
   DepthCameraSheet sheet;
   sheet.camera = {.width = kWidth, .height = kHeight, .fx_px = 50, .fy_px = 50, .cx_px = 19.5, .cy_px = 4.5};
   sheet.signal_e_m2_per_us = 2000.0;
@@ -58,11 +58,11 @@ struct Series {
 
 // What a camera delivers whose settings hold from the next exposure but one on, as the twin's do at 20 Hz.
 Series Drive(double box_m, double wall_m, double begin_s, bool automatic, int frames = 100) {
-  ExposureControl control(Sheet(), kRate_hz, {.automatic = automatic});
+  ExposureControl control(BoxSheet(), kDepthRate_hz, {.automatic = automatic});
   double now_s = begin_s, next_s = begin_s;
   Series run;
   for (int i = 0; i < frames; ++i) {
-    const DepthFrame frame = Seen(box_m, wall_m, now_s, i / kRate_hz);
+    const DepthFrame frame = Seen(box_m, wall_m, now_s, i / kDepthRate_hz);
     run.exposures_s.push_back(now_s);
     if (i >= frames - 20) run.box_measured |= box_m > 0.0 && !Saturates(box_m, now_s);
     now_s = next_s;
@@ -96,12 +96,12 @@ TEST(ExposureControl, HasNoShorterOneThanTheShortest) {
 }
 
 TEST(ExposureControl, StopsAlternatingOnceNothingSaturates) {
-  ExposureControl control(Sheet(), kRate_hz, {});
+  ExposureControl control(BoxSheet(), kDepthRate_hz, {});
   double next_s = 5e-3;
-  for (int i = 0; i < 10; ++i) next_s = control.After(Seen(0.8, 4.0, next_s, i / kRate_hz)).integration_s;
+  for (int i = 0; i < 10; ++i) next_s = control.After(Seen(0.8, 4.0, next_s, i / kDepthRate_hz)).integration_s;
   int shorter = 0;
   for (int i = 10; i < 80; ++i) {
-    next_s = control.After(Seen(0.0, 4.0, next_s, i / kRate_hz)).integration_s;
+    next_s = control.After(Seen(0.0, 4.0, next_s, i / kDepthRate_hz)).integration_s;
     shorter += next_s < 5e-3;
     if (i > 10 + 25) {
       EXPECT_EQ(next_s, 5e-3) << i;
@@ -111,7 +111,7 @@ TEST(ExposureControl, StopsAlternatingOnceNothingSaturates) {
 }
 
 TEST(ExposureControl, IgnoresTheFewPixelsThatAreAlwaysFull) {
-  ExposureControl control(Sheet(), kRate_hz, {});
+  ExposureControl control(BoxSheet(), kDepthRate_hz, {});
   DepthFrame frame = Seen(0.0, 4.0, 1e-3, 0.0);
   frame.flags[17] = kSaturated;  // 1 of 400
   EXPECT_EQ(control.After(frame).integration_s, 1e-3);
@@ -124,7 +124,7 @@ TEST(ExposureControl, MeasuresNearAndFarWhenAutomatic) {
 }
 
 TEST(ExposureControl, GivesAnEmptyFrameTheSettingsItHad) {
-  ExposureControl control(Sheet(), kRate_hz, {.automatic = true});
+  ExposureControl control(BoxSheet(), kDepthRate_hz, {.automatic = true});
   DepthFrame frame;
   frame.settings.integration_s = 7e-4;
   EXPECT_EQ(control.After(frame).integration_s, 7e-4);
@@ -132,11 +132,11 @@ TEST(ExposureControl, GivesAnEmptyFrameTheSettingsItHad) {
 
 // K T 0.8 (1 + C) / 2 = full well: T = 1.5e6 / (2000 * 0.8 * 0.725) us at 20 MHz.
 TEST(StartIntegration, FillsTheWellWithAWhiteWallAtOneMetre) {
-  EXPECT_NEAR(StartIntegration_s(Sheet(), {}, kRate_hz), 1293.1e-6, 0.1e-6);
-  DepthCameraSheet bright = Sheet();
+  EXPECT_NEAR(StartIntegration_s(BoxSheet(), {}, kDepthRate_hz), 1293.1e-6, 0.1e-6);
+  DepthCameraSheet bright = BoxSheet();
   bright.signal_e_m2_per_us = 1e6;
-  EXPECT_EQ(StartIntegration_s(bright, {}, kRate_hz), 100e-6);
-  EXPECT_NEAR(StartIntegration_s(Sheet(), {.second_frequency_hz = 30e6}, 100.0), 0.25e-3, 1e-12);  // eight fit 10 ms
+  EXPECT_EQ(StartIntegration_s(bright, {}, kDepthRate_hz), 100e-6);
+  EXPECT_NEAR(StartIntegration_s(BoxSheet(), {.second_frequency_hz = 30e6}, 100.0), 0.25e-3, 1e-12);  // eight fit 10 ms
 }
 
 }  // namespace

@@ -182,7 +182,5 @@ TEST(IntegrationTime, ChangesNothingElse) {
   EXPECT_TRUE(adapted.phase_images);
 }
 
-TEST(IntegrationTime, IsOffUnlessAskedFor) { EXPECT_FALSE(IntegrationConfig{}.adapt); }
-
 }  // namespace
 }  // namespace merlin

@@ -47,7 +47,7 @@ TEST(Scenario, NamesTheNearestForUnknownNames) {
     return "";
   };
   EXPECT_TRUE(Has(message([] { ReadScenario("coridor_loop", {}); }), "'corridor_loop'"));
-  EXPECT_TRUE(Has(message([] { RoomFile("corridor"); }), "'corridor_26x21'"));
+  EXPECT_TRUE(Has(message([] { RoomFile("corridor_26"); }), "'corridor_26x21'"));
   EXPECT_TRUE(Has(message([] { CameraFile("pmd_3ks"); }), "'pmd_3k_s'"));
   EXPECT_TRUE(Has(message([] { CameraFile("ccb"); }), "did you mean 'ccd'"));
   EXPECT_TRUE(Has(message([] { DepthCameraFile("ccb"); }), "unknown depth camera 'ccb'; did you mean 'camcube_2'"));
