@@ -25,10 +25,10 @@ bool Avoid::SaturatesAhead(const Observation& observation) const {
   return count > 0 && static_cast<double>(count) * observation.pixel_sr >= config_.saturated_min_sr;
 }
 
-std::optional<double> Avoid::SeenNow_m(const Observation& observation,
+std::optional<double> Avoid::SeenNow_m(std::span<const Point> points_base,
                                        std::span<const Eigen::Vector2d> path_base) const {
   std::vector<double> obstacles_m;
-  for (const Point& point : observation.points_base) {
+  for (const Point& point : points_base) {
     if (point.position.z() < config_.height_min_m || point.position.z() > config_.height_max_m) continue;
     if (const auto distance_m = DistanceUntilTouch_m(point.position.head<2>().cast<double>(), path_base))
       obstacles_m.push_back(*distance_m);
@@ -58,8 +58,15 @@ std::optional<double> Avoid::DistanceUntilTouch_m(const Eigen::Vector2d& point_b
 
 std::optional<double> Avoid::FreeDistance_m(const Observation& observation,
                                             std::span<const Eigen::Vector2d> path_base) {
-  if (std::abs(observation.view_yaw_rad) > config_.aside_max_rad) return 0.0;
-  std::optional<double> free_m = SeenNow_m(observation, path_base);
+  if (observation.pans) {
+    seen_.Add(observation, config_.height_min_m, config_.height_max_m);
+    if (!path_base.empty()) {
+      const SeenAhead::Age age = seen_.OldestLook(PathToLookAt(path_base));
+      if (age.time_s > config_.aside_max_s || age.driven_m > config_.aside_max_m) return 0.0;
+    }
+  }
+  std::optional<double> free_m =
+      observation.pans ? SeenNow_m(seen_.PointsBase(), path_base) : SeenNow_m(observation.points_base, path_base);
   if (SaturatesAhead(observation)) return WhileSaturated_m(observation, free_m);
   if (free_m)
     last_ = Memory{observation.stamp, observation.T_odom_base, free_m};
@@ -67,6 +74,11 @@ std::optional<double> Avoid::FreeDistance_m(const Observation& observation,
     free_m = Remaining_m(last_->free_m, last_->T_odom_base, observation.T_odom_base);
   measured_ = Memory{observation.stamp, observation.T_odom_base, free_m};
   return free_m;
+}
+
+PathAcross Avoid::PathToLookAt(std::span<const Eigen::Vector2d> path_base) const {
+  return AcrossPath(path_base, footprint_.front_m + 1.5 * config_.stop_gap_m,
+                    footprint_.half_width_m + config_.margin_m);
 }
 
 bool Avoid::Holds(const std::optional<Memory>& memory, Time now) const {

@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+#include "autonomy/path_ahead.h"
+#include "autonomy/seen_ahead.h"
 #include "perception/observation.h"
 #include "robot/base/config.h"
 #include "robot/types/footprint.h"
@@ -29,7 +31,9 @@ struct AvoidConfig {
   double hold_s = 0.5;                     // [0, 10] an obstacle that drops out of sight is believed this long
   double saturated_min_sr = 0.0035;        // [0, 1] so much straight ahead that saturates is something: 6 cm at 1 m
   double saturated_half_angle_rad = 0.15;  // [0, 1.6] what counts as straight ahead
-  double aside_max_rad = 0.2;  // [0, 1.6] a camera turned farther to a side does not see the path; half its view
+  double aside_max_s = 1.0;  // [0, 100] with a camera that turns, the car stops where a part of its path was not looked
+                             // at for so long...
+  double aside_max_m = 0.3;  // [0, 10] ...or while it drove so far
 };
 
 template <class Visitor>
@@ -43,7 +47,8 @@ void Visit(Visitor& v, AvoidConfig& c) {
   v("hold_s", c.hold_s, {0.0, 10.0});
   v("saturated_min_sr", c.saturated_min_sr, {0.0, 1.0});
   v("saturated_half_angle_rad", c.saturated_half_angle_rad, {0.0, 1.6});
-  v("aside_max_rad", c.aside_max_rad, {0.0, 1.6});
+  v("aside_max_s", c.aside_max_s, {0.0, 100.0});
+  v("aside_max_m", c.aside_max_m, {0.0, 10.0});
 }
 
 // A slower speed would only let the car creep: where no more is allowed, it halts.
@@ -55,17 +60,20 @@ class Avoid {
 
   // The length of the path that the car can drive until its footprint, turned along the path, touches something.
   // path_base: positions of the base's origin, in the base frame and in driving order, from the present one on.
-  // Nothing: no obstacle is seen on the path. Zero: the camera looks aside, or something is too close to measure: it
-  // saturates the shortest exposure, or no exposure within hold_s measured it.
+  // Nothing: no obstacle is seen on the path. Zero: a camera that turns has not looked at all of the path lately, or
+  // something is too close to measure: it saturates the shortest exposure, or no exposure within hold_s measured it.
   std::optional<double> FreeDistance_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base);
 
   // The highest speed from which the car, braking as planned, still stands stop_gap_m before the obstacle. Infinite without
   // one.
   double SpeedLimit_m_s(std::optional<double> free_m) const;
 
+  // Across a path of at least one position, where the car can just still stop: what a camera that turns must look at.
+  PathAcross PathToLookAt(std::span<const Eigen::Vector2d> path_base) const;
+
  private:
   bool SaturatesAhead(const Observation& observation) const;
-  std::optional<double> SeenNow_m(const Observation& observation, std::span<const Eigen::Vector2d> path_base) const;
+  std::optional<double> SeenNow_m(std::span<const Point> points_base, std::span<const Eigen::Vector2d> path_base) const;
   std::optional<double> DistanceUntilTouch_m(const Eigen::Vector2d& point_base,
                                              std::span<const Eigen::Vector2d> path_base) const;
 
@@ -82,6 +90,7 @@ class Avoid {
   AvoidConfig config_;
   std::optional<Memory> last_;      // obstacle
   std::optional<Memory> measured_;  // the last look ahead in which nothing saturated
+  SeenAhead seen_;                  // by a camera that turns
 };
 
 }  // namespace merlin

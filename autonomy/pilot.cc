@@ -31,9 +31,18 @@ Pilot::Pilot(const CarDescription& car, Behavior behavior, const PilotConfig& co
       behavior_(std::move(behavior)),
       config_(config),
       avoid_(footprint_, config.avoid),
-      unstick_(config.unstick) {}
+      unstick_(config.unstick),
+      look_around_(car, config.look_around) {}
 
 Decision Pilot::Decide(const Situation& situation) {
+  look_at_.reset();
+  Decision decision = DecideUnstuck(situation);
+  const bool lost = situation.lost_frames > config_.lost_frames_max;
+  decision.pan_rad = look_around_.Next_rad(situation.observation, look_at_, lost);
+  return decision;
+}
+
+Decision Pilot::DecideUnstuck(const Situation& situation) {
   Decision decision = DecideByTask(situation);
   unstick_.Watch(situation, decision.activity);
   if (unstick_.backs()) {
@@ -92,8 +101,9 @@ Decision Pilot::Drive(const Situation& situation, const Intent& intent) {
 // As fast as the obstacles ahead, or the free ground behind, allow.
 double Pilot::SpeedLimit_m_s(const Situation& situation, const Pursuit& pursuit, Direction direction) {
   if (direction == Direction::kForwards) {
+    if (!pursuit.path_base.empty()) look_at_ = avoid_.PathToLookAt(pursuit.path_base);
     free_m_ = avoid_.FreeDistance_m(situation.observation, pursuit.path_base);
-    return avoid_.SpeedLimit_m_s(free_m_);
+    return std::min(avoid_.SpeedLimit_m_s(free_m_), look_around_.SpeedLimit_m_s(config_.avoid.aside_max_m));
   }
   const auto free_m = FreeGround_m(situation.grid, footprint_, *situation.T_map_base, pursuit.path_base, config_.back);
   if (!free_m) return config_.back.speed_max_m_s;

@@ -18,6 +18,7 @@
 #include "autonomy/behaviors/table.h"
 #include "autonomy/energy.h"
 #include "autonomy/free_ground.h"
+#include "autonomy/look_around.h"
 #include "autonomy/pursue.h"
 #include "autonomy/situation.h"
 #include "autonomy/task.h"
@@ -34,6 +35,7 @@ struct PilotConfig {
   AvoidConfig avoid{};
   BackConfig back{};
   UnstickConfig unstick{};
+  LookAroundConfig look_around{};
   EnergyConfig energy{};
   ArbitrateConfig arbitrate{};
 };
@@ -47,6 +49,7 @@ void Visit(Visitor& v, PilotConfig& c) {
   v("avoid", c.avoid);
   v("back", c.back);
   v("unstick", c.unstick);
+  v("look_around", c.look_around);
   v("energy", c.energy);
   v("arbitrate", c.arbitrate);
 }
@@ -58,6 +61,7 @@ struct Decision {
   std::string doing;                      // the same for people: "follows the corridor", "waits for an obstacle", ...
   std::string gives_up{};                 // not empty: why the run should end, since the car does not get on
   std::optional<double> turntable_rad{};  // where the turntable is to turn, from its start; none: nothing new
+  std::optional<double> pan_rad{};        // where the cameras are to look, positive to the left; none: nothing new
 };
 
 class Pilot {
@@ -70,6 +74,7 @@ class Pilot {
   Decision Decide(const Situation& situation);
 
  private:
+  Decision DecideUnstuck(const Situation& situation);
   Decision DecideByTask(const Situation& situation);
   Decision Halt(Activity activity) const;
   Decision Drive(const Situation& situation, const Intent& intent);
@@ -82,7 +87,9 @@ class Pilot {
   PilotConfig config_;
   Avoid avoid_;
   Unstick unstick_;
-  std::optional<double> free_m_;  // ahead, as far as known at the newest decision
+  LookAround look_around_;
+  std::optional<double> free_m_;       // ahead, as far as known at the newest decision
+  std::optional<PathAcross> look_at_;  // of the newest path forwards
 };
 
 }  // namespace merlin

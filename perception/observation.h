@@ -30,6 +30,8 @@ struct Observation {
   std::vector<Point> points_base;
   Eigen::Vector3f camera_base{0, 0, 0};  // where the rays begin
   double view_yaw_rad = 0.0;             // direction of the camera, from straight ahead; positive: to the left
+  bool pans = false;                     // a pan unit turns the camera
+  double half_view_rad = 0.0, half_view_up_rad = 0.0;  // the view reaches so far to either side, and up and down
   // Pixels without a point. free_base: ends of rays that were too dark to measure; up to there is free space, or
   // something very dark. saturated_base: unit directions in which something is close, at an unknown range.
   // unknown_base: unit directions of all others.

@@ -9,6 +9,7 @@ Pipeline::Pipeline(Rig rig, const PerceptionConfig& config)
     : rig_(std::move(rig)),
       config_(config),
       rays_(PixelRays(rig_.depth.camera)),
+      view_(FieldOfViewOf(rig_.depth.camera)),
       odometry_(rig_.car),
       heading_(config.heading) {}
 
@@ -48,11 +49,13 @@ std::optional<Observation> Pipeline::Process(DepthFrame frame) {
   observation.stamp = frame.stamp;
   observation.T_odom_base = *T_odom_base;
   if (rig_.pans) observation.view_yaw_rad = *pan_.At(frame.stamp);
+  observation.pans = rig_.pans;
+  observation.half_view_rad = view_.half_rad;
+  observation.half_view_up_rad = view_.half_up_rad;
   observation.yaw_rad = heading_.Yaw_rad(Yaw(*T_odom_base));
   observation.yaw_sigma_rad = heading_.Sigma_rad(frame.stamp, Yaw(*T_odom_base));
 
-  const FilteredDepth filtered =
-      FilterDepth(std::move(frame), rig_.depth, config_.filter, FloorRanges_m(rays_, *T_base_depth));
+  const FilteredDepth filtered = FilterDepth(std::move(frame), rig_.depth, config_.filter);
   ProjectDepth(filtered, rig_.depth, rays_, *T_base_depth, observation);
 
   if (color_ && rig_.color && std::abs(Seconds(observation.stamp - color_->stamp)) <= config_.color_age_max_s) {

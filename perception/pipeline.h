@@ -73,6 +73,7 @@ class Pipeline {
   Rig rig_;
   PerceptionConfig config_;
   std::vector<Eigen::Vector3f> rays_;
+  FieldOfView view_;
   Odometry odometry_;
   Heading heading_;
   AngleTrack pan_, turntable_;

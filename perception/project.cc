@@ -32,16 +32,14 @@ std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera) {
   return rays;
 }
 
-std::vector<float> FloorRanges_m(const std::vector<Eigen::Vector3f>& rays, const Pose& T_base_camera) {
-  const Eigen::Vector3f up_camera = T_base_camera.linear().row(2).cast<float>();
-  const float height_m = static_cast<float>(T_base_camera.translation().z());
-  std::vector<float> ranges_m;
-  ranges_m.reserve(rays.size());
-  for (const Eigen::Vector3f& ray : rays) {
-    const float up = up_camera.dot(ray);
-    ranges_m.push_back(up < 0.0f && height_m > 0.0f ? -height_m / up : HUGE_VALF);
-  }
-  return ranges_m;
+FieldOfView FieldOfViewOf(const CameraModel& camera) {
+  const auto from_axis = [&](double u, double v) {
+    const Eigen::Vector3d ray = camera.Ray(u, v);
+    return std::max(std::abs(ray.x()), std::abs(ray.y())) / ray.z();
+  };
+  const double right = camera.width - 0.5, below = camera.height - 0.5;
+  return {.half_rad = std::atan(std::min(from_axis(-0.5, camera.cy_px), from_axis(right, camera.cy_px))),
+          .half_up_rad = std::atan(std::min(from_axis(camera.cx_px, -0.5), from_axis(camera.cx_px, below)))};
 }
 
 namespace {

@@ -26,8 +26,11 @@ class RangeSigma {
 // Unit rays of all pixels in the optical frame, row by row.
 std::vector<Eigen::Vector3f> PixelRays(const CameraModel& camera);
 
-// The range [m] at which each ray meets the floor, which the base frame stands on; infinite for those that do not.
-std::vector<float> FloorRanges_m(const std::vector<Eigen::Vector3f>& rays, const Pose& T_base_camera);
+// How far a camera sees from its optical axis.
+struct FieldOfView {
+  double half_rad = 0.0, half_up_rad = 0.0;  // to the nearer side, and up or down, whichever is nearer
+};
+FieldOfView FieldOfViewOf(const CameraModel& camera);
 
 // The range [m] up to which a dark pixel shows free space: anything nearer with albedo times cos(incidence) >= 0.02
 // (black plastic at 60 deg) would have returned more light. At most the unambiguous range.

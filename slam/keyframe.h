@@ -24,6 +24,7 @@ struct Keyframe {
   double path_m = 0.0;                      // distance driven until then
   std::optional<double> yaw_rad;            // by the heading alone, in the map; nothing without a compass
   double yaw_sigma_rad = 0.0;               // one standard deviation of it
+  double view_yaw_rad = 0.0;                // direction of the camera, from straight ahead; positive: to the left
   std::vector<Point> points_base;
   Eigen::Vector3f camera_base{0, 0, 0};  // where the rays begin
   std::vector<PlacedView> views;         // its own first, then the newest of frames near it that are no key frames

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "slam/register/thin_source.h"
+
 namespace merlin {
 namespace {
 
+constexpr double kBridge_m = 0.3;   // odometry alone is good enough for the map over this distance
 constexpr double kAtRest_m = 1e-3;  // a car that moves less from one frame to the next does not move
 
 bool HasHeading(const Observation& observation) { return std::isfinite(observation.yaw_sigma_rad); }
@@ -31,19 +34,22 @@ bool Localizer::Begin(const Observation& observation) {
 Localization Localizer::Localize(const Observation& observation, const VoxelMap& local_map, bool has_map) {
   const Pose motion = T_odom_last_.inverse() * observation.T_odom_base;
   const PosePrior guess = Guess(observation, motion);
-  const std::vector<Point> source = Downsample(observation.points_base, config_.source_voxel_m);
+  const std::vector<Point> source =
+      ThinSource(observation.points_base, config_.source_voxel_m, config_.source_points_min);
   last_ = Register(source, observation.camera_base, local_map, guess, config_.icp);
-  lost_frames_ = last_.converged || !has_map ? 0 : lost_frames_ + 1;
+  const bool enough_points = static_cast<int>(source.size()) >= config_.icp.inliers_min;
+  const bool on_new_ground = has_map && enough_points && SeesNewGround(observation, source.size());
+  if (!on_new_ground) lost_frames_ = last_.converged || !has_map ? 0 : lost_frames_ + 1;
   T_map_last_ = last_.converged ? last_.T_map_base : guess.T_map_base;
   T_odom_last_ = observation.T_odom_base;
 
   const double distance_m = motion.translation().norm();
   path_m_ += distance_m;
+  if (last_.converged) fitted_at_m_ = path_m_;
   if (last_.converged) MeasureSlip(motion, guess.T_map_base.inverse() * last_.T_map_base);
-  const bool enough_points = static_cast<int>(source.size()) >= config_.icp.inliers_min;
   const bool restarts = GivesUp(observation.stamp, distance_m >= kAtRest_m) && enough_points;
   if (restarts) lost_frames_ = 0;
-  return {*T_map_last_, has_map ? last_.converged || restarts : enough_points};
+  return {*T_map_last_, has_map ? last_.converged || on_new_ground || restarts : enough_points};
 }
 
 std::optional<double> Localizer::MapYaw_rad(const Observation& observation) const {
@@ -73,6 +79,13 @@ void Localizer::MeasureSlip(const Pose& motion, const Pose& T_guess_registered) 
   if (distance_m <= 0.0) return;
   const double added = T_guess_registered.translation().dot(motion.translation()) / (distance_m * distance_m);
   slip_ += (1.0 - std::exp(-distance_m / config_.slip_memory_m)) * (added - slip_);
+}
+
+// A camera that turns looks where the map has nothing yet, such as at the other wall of a corridor. Its pose is known from
+// the frames before.
+bool Localizer::SeesNewGround(const Observation& observation, std::size_t points) const {
+  return observation.pans && !last_.converged && 2 * static_cast<std::size_t>(last_.pairs) < points &&
+         path_m_ - fitted_at_m_ <= kBridge_m;
 }
 
 // Nothing that the car sees has been in its map for a while, and it does not move. The error of odometry over the short

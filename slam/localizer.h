@@ -45,6 +45,7 @@ class Localizer {
  private:
   PosePrior Guess(const Observation& observation, const Pose& motion) const;
   void MeasureSlip(const Pose& motion, const Pose& T_guess_registered);
+  bool SeesNewGround(const Observation& observation, std::size_t points) const;
   bool GivesUp(Time stamp, bool moves);
 
   SlamConfig config_;
@@ -57,6 +58,7 @@ class Localizer {
   std::optional<Time> lost_at_rest_;  // since then
   double slip_ = 0.0;                 // share of the wheels' distance that registration adds, averaged
   double path_m_ = 0.0;
+  double fitted_at_m_ = 0.0;  // path_m_ when a frame last fitted the map
 };
 
 }  // namespace merlin

@@ -41,10 +41,14 @@ void Mapper::EndFrame(double path_m) {
 void Mapper::Keep(const Observation& observation, const Pose& T_map_base, std::optional<double> yaw_rad) {
   if (keyframes_.empty()) return AddKeyframe(observation, T_map_base, Pose::Identity(), yaw_rad);
   const Pose since = keyframes_.back().T_map_base.inverse() * T_map_base;
+  const double view_turn_rad = Yaw(since) + observation.view_yaw_rad - keyframes_.back().view_yaw_rad;
+  const double least_turn_rad =
+      observation.pans ? std::max(config_.keyframe_angle_rad, observation.half_view_rad) : config_.keyframe_angle_rad;
   const bool moved =
-      since.translation().norm() >= config_.keyframe_distance_m || std::abs(Yaw(since)) >= config_.keyframe_angle_rad;
+      since.translation().norm() >= config_.keyframe_distance_m || std::abs(view_turn_rad) >= least_turn_rad;
   if (!moved) return AddView(observation, T_map_base, keyframes_.back());
-  if (Keyframe* const former = NearestOfFormerVisit(T_map_base)) return AddView(observation, T_map_base, *former);
+  if (Keyframe* const former = NearestOfFormerVisit(T_map_base, observation.view_yaw_rad))
+    return AddView(observation, T_map_base, *former);
   AddKeyframe(observation, T_map_base, since, yaw_rad);
 }
 
@@ -57,6 +61,7 @@ void Mapper::AddKeyframe(const Observation& observation, const Pose& T_map_base,
                         .path_m = path_m_,
                         .yaw_rad = yaw_rad,
                         .yaw_sigma_rad = observation.yaw_sigma_rad,
+                        .view_yaw_rad = observation.view_yaw_rad,
                         .points_base = observation.points_base,
                         .camera_base = observation.camera_base,
                         .views = {{observation.stamp, Pose::Identity(), ClearView(observation)}},
@@ -76,13 +81,14 @@ void Mapper::AddView(const Observation& observation, const Pose& T_map_base, Key
 }
 
 // Null: the place is not known from a former visit, or no key frame of it is near.
-Keyframe* Mapper::NearestOfFormerVisit(const Pose& T_map_base) {
+Keyframe* Mapper::NearestOfFormerVisit(const Pose& T_map_base, double view_yaw_rad) {
   Keyframe* nearest = nullptr;
   double nearest_m = config_.revisit_m;
   if (!closer_.KnowsThePlace(path_m_)) return nullptr;
   for (Keyframe& keyframe : keyframes_) {
     if (path_m_ - keyframe.path_m < config_.loop.apart_m) continue;
-    if (std::abs(WrapPi(Yaw(keyframe.T_map_base) - Yaw(T_map_base))) >= config_.revisit_rad) continue;
+    const double turn_rad = WrapPi(Yaw(keyframe.T_map_base) - Yaw(T_map_base) + keyframe.view_yaw_rad - view_yaw_rad);
+    if (std::abs(turn_rad) >= config_.revisit_rad) continue;
     const double distance_m = (keyframe.T_map_base.translation() - T_map_base.translation()).head<2>().norm();
     if (distance_m < nearest_m) nearest = &keyframe, nearest_m = distance_m;
   }

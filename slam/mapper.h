@@ -46,7 +46,7 @@ class Mapper {
   void AddKeyframe(const Observation& observation, const Pose& T_map_base, const Pose& T_previous_base,
                    std::optional<double> yaw_rad);
   void AddView(const Observation& observation, const Pose& T_map_base, Keyframe& keyframe);
-  Keyframe* NearestOfFormerVisit(const Pose& T_map_base);
+  Keyframe* NearestOfFormerVisit(const Pose& T_map_base, double view_yaw_rad);
   std::vector<Point> RecentPoints(const Observation& observation, const Pose& T_map_base) const;
   Pose CloseLoop(const Observation& observation, const Pose& T_map_base);
   void MoveKeyframes(const std::vector<Pose>& corrected);

@@ -17,6 +17,7 @@ struct SlamConfig {
 
   // Localisation: the guess that registration starts from, and how far it is trusted.
   double source_voxel_m = 0.08;     // [0.005, 1] registration gets one point of the frame per voxel of this edge
+  int source_points_min = 200;      // [0, 1e6] ...or of a smaller edge, so that it gets at least so many; guess
   double odometry_share = 0.02;     // [1e-4, 1] one sigma of odometry, as a share of the distance driven; guess
   double odometry_floor_m = 0.001;  // [1e-5, 1] added to that sigma; guess
   double slip_min = 0.08;           // [0.01, 1] the wheels count as slipping from this share of slip on; guess
@@ -46,6 +47,7 @@ void Visit(Visitor& v, SlamConfig& c) {
   v("occupancy", c.occupancy);
   v("loop", c.loop);
   v("source_voxel_m", c.source_voxel_m, {0.005, 1.0});
+  v("source_points_min", c.source_points_min, {0.0, 1e6});
   v("local_length_m", c.local_length_m, {0.5, 1000.0});
   v("keyframe_distance_m", c.keyframe_distance_m, {0.0, 10.0});
   v("keyframe_angle_rad", c.keyframe_angle_rad, {0.0, 3.2});

@@ -35,7 +35,8 @@ struct CarChoice {
   std::string model = "merlin";  // models/<name>/<name>.urdf, or a path
   CarStart start;
   DrivetrainConfig drivetrain;  // of the twin: how the true car differs from its model
-  bool pan = false;         // the unit that turns the cameras moves (pan_joint of the model); false: it is held ahead
+  bool pan = false;         // the unit that turns the cameras moves (pan_joint of the model); false: it is held ahead.
+                            // It sweeps by itself where the lens is narrow (autonomy/look_around.h)
   std::string calibration;  // what the stack believes: a file of `merlin calibrate odometry`; empty: the model
 };
 

@@ -120,6 +120,8 @@ void DriveLoop::Arbitrate(const ManualInput& manual) {
 
 void DriveLoop::Act() {
   Send(state_.arbitration.command);
+  if (robot_.pan != nullptr && state_.decided == state_.now && state_.decision->pan_rad)
+    UseDevice("pan unit", [this] { robot_.pan->Send(*state_.decision->pan_rad); });
   if (robot_.turntable == nullptr || state_.decided != state_.now || !state_.decision->turntable_rad) return;
   UseDevice("turntable", [this] { robot_.turntable->Send(*state_.decision->turntable_rad); });
 }

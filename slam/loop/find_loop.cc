@@ -10,8 +10,9 @@
 namespace merlin {
 namespace {
 
-constexpr std::size_t kFormerMax = 15;  // key frames in the former map: every second of the nearest
-constexpr double kThin_m = 0.08;        // each of them gives one point per voxel of this edge
+constexpr std::size_t kFormerMax = 15;       // key frames in the former map: every second of the nearest...
+constexpr std::size_t kFormerSweepMax = 60;  // ...but all of them where the camera sweeps
+constexpr double kThin_m = 0.08;             // each of them gives one point per voxel of this edge
 constexpr double kCoarse_m = 0.4, kFine_m = 0.1;
 constexpr int kIterations = 30;
 constexpr double kStep = 2e-3;  // m and rad; alternating pairs keep a fit from converging more finely
@@ -30,8 +31,10 @@ std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const 
       views.emplace_back(distance_m, i);
   }
   std::ranges::sort(views);
+  const bool sweeps = std::ranges::any_of(keyframes, [](const Keyframe& k) { return k.view_yaw_rad != 0.0; });
+  const std::size_t most = sweeps ? kFormerSweepMax : kFormerMax, apart = sweeps ? 1 : 2;
   std::vector<std::size_t> indices;
-  for (std::size_t i = 0; i < views.size() && indices.size() < kFormerMax; i += 2) indices.push_back(views[i].second);
+  for (std::size_t i = 0; i < views.size() && indices.size() < most; i += apart) indices.push_back(views[i].second);
   return indices;
 }
 

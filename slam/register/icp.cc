@@ -84,6 +84,7 @@ RegisterResult Register(std::span<const Point> points_base, const Eigen::Vector3
   while (result.iterations < config.iterations_max && !small_step) {
     ++result.iterations;
     NormalEquations equations = Linearize(points, search, result.T_map_base, config);
+    result.pairs = equations.pairs;
     result.inliers = equations.inliers;
     if (equations.inliers < config.inliers_min) return result;
     result.inlier_share = static_cast<double>(equations.inliers) / equations.pairs;

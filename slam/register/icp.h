@@ -48,6 +48,7 @@ struct PosePrior {
 struct RegisterResult {
   Pose T_map_base = Pose::Identity();
   Matrix6d covariance = Matrix6d::Zero();  // over (translation, rotation) in the base frame
+  int pairs = 0;                           // points that have a surface of the map nearby
   int inliers = 0;
   double inlier_share = 0.0;  // of the points that have a surface of the map nearby: new ground does not count
   double rms_m = 0.0;         // of the inliers' point-to-plane distances

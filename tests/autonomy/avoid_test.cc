@@ -145,19 +145,5 @@ TEST(Avoid, LimitsTheSpeedSoThatBrakingEndsAtTheGap) {
   EXPECT_NEAR(avoid.SpeedLimit_m_s(config.stop_gap_m + 0.4), std::sqrt(0.4), 1e-12);
 }
 
-TEST(Avoid, SeesNoFreePathWhereTheCameraLooksAside) {
-  Avoid avoid({.front_m = 0.45, .half_width_m = 0.15}, {});
-  const std::vector<Eigen::Vector2d> ahead{{0.0, 0.0}, {4.0, 0.0}};
-  Observation observation;
-  for (const double yaw_rad : {0.0, 0.2, -0.2}) {
-    observation.view_yaw_rad = yaw_rad;
-    EXPECT_FALSE(avoid.FreeDistance_m(observation, ahead)) << yaw_rad;
-  }
-  for (const double yaw_rad : {0.21, -0.21, 1.5}) {
-    observation.view_yaw_rad = yaw_rad;
-    EXPECT_EQ(avoid.FreeDistance_m(observation, ahead), 0.0) << yaw_rad;
-  }
-}
-
 }  // namespace
 }  // namespace merlin
