@@ -29,7 +29,7 @@ struct AvoidConfig {
   double stop_gap_m = 0.5;                 // [0.05, 5] the car stands with at least this free before its front
   double deceleration_m_s2 = 0.5;          // [0.05, 5] braking it plans with; the car can do 2
   double hold_s = 0.5;                     // [0, 10] an obstacle that drops out of sight is believed this long
-  double saturated_min_sr = 0.0035;        // [0, 1] so much straight ahead that saturates is something: 6 cm at 1 m
+  double saturated_min_sr = 0.0035;        // [0, 1] solid angle of saturated pixels that counts; 6 cm at 1 m
   double saturated_half_angle_rad = 0.15;  // [0, 1.6] what counts as straight ahead
   double aside_max_s = 1.0;  // [0, 100] with a camera that turns, the car stops where a part of its path was not looked
                              // at for so long...

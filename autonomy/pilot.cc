@@ -61,7 +61,11 @@ Decision Pilot::DecideByTask(const Situation& situation) {
   Intent intent = behavior_(situation);
   if (intent.doing.empty()) intent.doing = Sentence(intent.activity);
   if (intent.done || intent.speed_m_s <= 0.0)
-    return {Command(0.0, intent.steering_rad), intent.done, intent.activity, intent.doing, {}, intent.turntable_rad};
+    return {.command = Command(0.0, intent.steering_rad),
+            .done = intent.done,
+            .activity = intent.activity,
+            .doing = intent.doing,
+            .turntable_rad = intent.turntable_rad};
   if (!situation.has_map) return Halt(Activity::kSeesTooLittle);
   if (situation.lost_frames > config_.lost_frames_max) return Halt(Activity::kIsLost);
   return Drive(situation, intent);
@@ -85,12 +89,10 @@ Decision Pilot::Drive(const Situation& situation, const Intent& intent) {
   double speed_m_s = std::min({intent.speed_m_s, limit_m_s, end_limit_m_s});
   if (speed_m_s < kCreep_m_s) speed_m_s = 0.0;
 
-  Decision decision{Command(backwards ? -speed_m_s : speed_m_s, pursuit.steering_rad),
-                    false,
-                    intent.activity,
-                    intent.doing,
-                    {},
-                    intent.turntable_rad};
+  Decision decision{.command = Command(backwards ? -speed_m_s : speed_m_s, pursuit.steering_rad),
+                    .activity = intent.activity,
+                    .doing = intent.doing,
+                    .turntable_rad = intent.turntable_rad};
   if (limit_m_s < kCreep_m_s) {
     decision.activity = backwards ? Activity::kWaitsForFreeGround : Activity::kWaitsForObstacle;
     decision.doing = Sentence(decision.activity);

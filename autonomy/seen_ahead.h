@@ -29,8 +29,8 @@ class SeenAhead {
   // The points ahead that were seen by now, in the base frame of the newest frame.
   std::vector<Point> PointsBase() const;
 
-  // The part of the path that was looked at least lately: since when, and how far the car has driven since. Infinite
-  // where it never was. across: in the base frame of the newest frame.
+  // For the part of the path that the camera looked at longest ago: how long ago, and how far the car has driven since.
+  // Infinite where the camera has never looked at a part. across: in the base frame of the newest frame.
   struct Age {
     double time_s = 0.0, driven_m = 0.0;
   };

@@ -3,7 +3,7 @@
 //
 //   waits or is lost for back_after_s  ->  it backs a little once, over ground that is known to be free
 //   waits or is lost for end_after_s   ->  the run ends, with the reason
-//   has nothing to hold on to for longer than it had a hold, by end_after_s  ->  the same
+//   drives without a hold (lost, or only a floor in view) for end_after_s, less the time with one  ->  the same
 //   drives on, away_m from there       ->  all is forgotten
 //
 // Backing gives the camera another view of what was too near to measure, or of a place that did not fit the map. Only

@@ -16,9 +16,9 @@
 
 namespace merlin {
 
-// Changes pixels with Rejection::kGhost whose order gets known: their reason becomes kNone, and kU is added to their
-// range. Does so only in frames in which few pixels are bright enough for their range (less than a quarter): what is
-// dark has more bias, from light that came by other ways, and where there is enough without it, it is left out.
+// Accepts each pixel with Rejection::kGhost whose order the surface tells: its reason becomes kNone, and kU is added to
+// its range. Works only on frames in which less than a quarter of the pixels are accepted already. Dark pixels are more
+// biased, by light that came over other paths, so that frames with enough bright ones do better without them.
 void UnwrapGhosts(DepthFrame& frame, std::vector<Rejection>& reasons, double lamp_amplitude_e_m2,
                   const DepthFilterConfig& config);
 

@@ -1,5 +1,5 @@
-// A free cloud: points that belong to no map and no camera, such as those of a file. Its coordinates are doubles, because files may have those of a
-// national grid, millions of metres from the origin.
+// A free cloud: points that belong to no map and no camera, such as those of a file. Its coordinates are doubles, because
+// files may have those of a national grid, millions of metres from the origin.
 #pragma once
 
 #include <Eigen/Core>

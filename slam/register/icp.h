@@ -53,8 +53,9 @@ struct RegisterResult {
   double inlier_share = 0.0;  // of the points that have a surface of the map nearby: new ground does not count
   double rms_m = 0.0;         // of the inliers' point-to-plane distances
   int iterations = 0;
-  // What the pairs hold of the position on the floor along its best held direction, over what they hold of the height. Of a
-  // bare floor about 0, with a wall in view far above kHeldShareMin (undetermined.h); infinite without a floor.
+  // The information about the position on the floor, in the direction that is known best, divided by the information about
+  // the height. About 0 where only floor is seen, far above kHeldShareMin (undetermined.h) with a wall in view; infinite
+  // without a floor.
   double level_share = 0.0;
   bool converged = false;  // false: the pose is the last iterate, and must not be trusted
 };

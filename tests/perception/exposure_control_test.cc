@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/pmd_3k.h"
+
 namespace merlin {
 namespace {
 
@@ -13,18 +15,7 @@ constexpr double kDepthRate_hz = 20.0;
 constexpr int kWidth = 40, kHeight = 10;
 
 DepthCameraSheet BoxSheet() {
-  DepthCameraSheet sheet;
-  sheet.camera = {.width = kWidth, .height = kHeight, .fx_px = 50, .fy_px = 50, .cx_px = 19.5, .cy_px = 4.5};
-  sheet.signal_e_m2_per_us = 2000.0;
-  sheet.contrast_at_20mhz = 0.45;
-  sheet.contrast_corner_hz = 30e6;
-  sheet.full_well_e = 1.5e6;
-  sheet.readout_s = 1e-3;
-  sheet.low_signal_amplitude_e = 600.0;
-  sheet.integration_min_s = 100e-6;
-  sheet.integration_max_s = 5000e-6;
-  sheet.frequencies_hz = {20e6, 30e6};
-  return sheet;
+  return ExposingPmd3k({.width = kWidth, .height = kHeight, .fx_px = 50, .fy_px = 50, .cx_px = 19.5, .cy_px = 4.5});
 }
 
 // The camera's law: a surface of albedo 0.5 collects 1000 e T [us] / d^2, and the fuller tap holds 0.725 of that.

@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/pmd_3k.h"
+
 namespace merlin {
 namespace {
 
@@ -17,18 +19,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFullAmplitude_e = 931034.48;
 
 DepthCameraSheet LobeSheet() {
-  DepthCameraSheet sheet;
-  sheet.camera = {.width = 16, .height = 12, .fx_px = 22, .fy_px = 22, .cx_px = 7.5, .cy_px = 5.5};
-  sheet.signal_e_m2_per_us = 2000.0;
-  sheet.contrast_at_20mhz = 0.45;
-  sheet.contrast_corner_hz = 30e6;
-  sheet.full_well_e = 1.5e6;
-  sheet.readout_s = 1e-3;
-  sheet.low_signal_amplitude_e = 600.0;
-  sheet.integration_min_s = 100e-6;
-  sheet.integration_max_s = 5000e-6;
-  sheet.frequencies_hz = {20e6, 30e6};
-  return sheet;
+  return ExposingPmd3k({.width = 16, .height = 12, .fx_px = 22, .fy_px = 22, .cx_px = 7.5, .cy_px = 5.5});
 }
 
 // A facing wall, darker towards the picture's edge (down to a third). The camera's own law: signal ~ T / d^2.

@@ -8,23 +8,13 @@
 #include <vector>
 
 #include "perception/project.h"
+#include "tests/support/pmd_3k.h"
 
 namespace merlin {
 namespace {
 
 constexpr double kFrequency_hz = 30e6;
 const double kU_m = kSpeedOfLight_m_s / (2.0 * kFrequency_hz);  // 4.997 m
-
-// 64 x 48 pixels over 40 x 30 deg.
-DepthCameraSheet Sheet() {
-  DepthCameraSheet sheet;
-  sheet.camera = {.width = 64, .height = 48, .fx_px = 87.9, .fy_px = 89.6, .cx_px = 31.5, .cy_px = 23.5};
-  sheet.signal_e_m2_per_us = 2000.0;
-  sheet.contrast_at_20mhz = 0.45;
-  sheet.contrast_corner_hz = 30e6;
-  sheet.read_noise_e = 200.0;
-  return sheet;
-}
 
 // Where a ray ends, and how bright that is: albedo times the cosine of incidence.
 struct Hit {
@@ -46,7 +36,7 @@ struct Seen {
 };
 
 Seen Look(const World& world) {
-  const DepthCameraSheet sheet = Sheet();
+  const DepthCameraSheet sheet = Pmd3k();
   Seen seen;
   seen.frame.settings.frequency_hz = kFrequency_hz;
   seen.frame.width = sheet.camera.width;
@@ -69,7 +59,7 @@ struct Score {
 };
 
 Score ScoreOf(const Seen& seen) {
-  const FilteredDepth filtered = FilterDepth(seen.frame, Sheet(), {});
+  const FilteredDepth filtered = FilterDepth(seen.frame, Pmd3k(), {});
   Score score;
   for (std::size_t i = 0; i < seen.truth_m.size(); ++i) {
     if (filtered.reasons[i] != Rejection::kNone) continue;
@@ -126,7 +116,7 @@ TEST(Unwrap, LeavesAFrameAloneInWhichEnoughIsKnown) {
     return Nearer(Corridor(9.0)(ray), ray.x() > 0.05 ? Plane(ray, -Eigen::Vector3d::UnitZ(), 1.5, 0.7) : Hit{});
   });
   EXPECT_EQ(ScoreOf(seen).wrong, 0);
-  const FilteredDepth filtered = FilterDepth(seen.frame, Sheet(), {});
+  const FilteredDepth filtered = FilterDepth(seen.frame, Pmd3k(), {});
   for (std::size_t i = 0; i < seen.truth_m.size(); ++i)
     if (filtered.reasons[i] == Rejection::kNone) {
       EXPECT_LT(filtered.frame.range_m[i], kU_m);
@@ -139,7 +129,7 @@ TEST(Unwrap, TakesFramesWithoutLightOrPixels) {
   EXPECT_EQ(ScoreOf(dark).right + ScoreOf(dark).wrong, 0);
   std::ranges::fill(dark.frame.amplitude, 0.0f);
   EXPECT_EQ(ScoreOf(dark).right + ScoreOf(dark).wrong, 0);
-  EXPECT_TRUE(FilterDepth(DepthFrame{}, Sheet(), {}).reasons.empty());
+  EXPECT_TRUE(FilterDepth(DepthFrame{}, Pmd3k(), {}).reasons.empty());
 }
 
 }  // namespace

@@ -11,24 +11,11 @@
 #include "robot/types/depth_camera.h"
 #include "robot/types/depth_camera_errors.h"
 #include "sim/tof/chip.h"
+#include "tests/support/pmd_3k.h"
 
 namespace merlin::sim {
 
 constexpr double kPeriod_m = 299792458.0 / 40e6;  // of 20 MHz
-
-// A 64x48 PMD camera; all its numbers are round or those of the predictions it is compared with.
-inline DepthCameraSheet Pmd3k() {
-  DepthCameraSheet sheet;
-  sheet.camera = {.width = 64, .height = 48, .fx_px = 87.9, .fy_px = 89.6, .cx_px = 31.5, .cy_px = 23.5};
-  sheet.signal_e_m2_per_us = 2000.0;
-  sheet.contrast_at_20mhz = 0.45;
-  sheet.contrast_corner_hz = 30e6;
-  sheet.read_noise_e = 200.0;
-  sheet.full_well_e = 1.5e6;
-  sheet.sbi = true;
-  sheet.frequencies_hz = {20e6, 30e6};
-  return sheet;
-}
 
 // Of 160x120 pixels, which cannot suppress background light.
 inline DepthCameraSheet Pmd19k() {
