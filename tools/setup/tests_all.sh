@@ -11,7 +11,6 @@ test_everything() {
   unlock
   timed "release tests" run_ctest release
   timed "scenarios" run_scenarios
-  timed "envelope" count "the envelope on one seed a row" run_envelope
   timed "clang-format" check_format
   timed "no-twin build" count "the preset no-twin builds" build_alone no-twin
   timed "clang build" count "clang builds everything" build_with "clang++-$clang" clang all unit_tests
@@ -70,10 +69,6 @@ run_scenario() { # name, seed
   "$top/build/release/tools/merlin" run "$1" --seed "$2" --out "$out" >"$out.log" 2>&1 </dev/null ||
     { tail -n 20 "$out.log" >&2; return 1; }
   [ "$1" != corridor_loop ] || grep -Eq '"color": "[0-9a-f]{64}"' "$out/result.json" || { say "$out: no colour"; return 1; }
-}
-
-run_envelope() {
-  "$top/build/release/tools/merlin" sweep envelope --seeds 1 --out "$top/build/scenarios/envelope" </dev/null
 }
 
 # Each target for a minute, two at a time; and the bug planted in its decoder must be found.
