@@ -33,11 +33,24 @@ class Schedule {
   std::uint64_t count_ = 0;
 };
 
+// The default does not depend on the number of cores: on a single core three threads take no more processor time than
+// one.
+int ThreadsOf(const TwinOptions& options) { return options.threads > 0 ? options.threads : options.color ? 3 : 2; }
+
+// How many threads share the rows of a depth frame. Two, where the frame is what a run waits for. With a colour camera
+// beside a small frame both cores are busy without it.
+int DepthThreadsOf(const TwinOptions& options) {
+  constexpr int kLarge_px = 10'000;
+  const CameraModel& lens = options.depth.sheet.camera;
+  return ThreadsOf(options) > 1 && (!options.color || lens.width * lens.height > kLarge_px) ? 2 : 1;
+}
+
 class TwinDepth final : public DepthCamera {
  public:
   TwinDepth(const TwinOptions& options, const sim::World& world, Worker& worker)
       : info_{options.depth.sheet, options.world.car.T_base_depth, options.depth.rate_hz},
-        camera_(options.depth.sheet, options.depth.errors, options.depth.effects, options.seed),
+        camera_(options.depth.sheet, options.depth.errors, options.depth.effects, options.seed,
+                DepthThreadsOf(options)),
         surroundings_(sim::SurroundingsOf(world.model(), options.materials)),
         scene_(world.model(), CarBodies(world), sim::PanesOf(surroundings_)),
         worker_(worker),
@@ -204,10 +217,6 @@ sim::WorldOptions WorldOf(const TwinOptions& options) {
   world.seed = options.seed;
   return world;
 }
-
-// The default does not depend on the number of cores: on a single core three threads take no more processor time than
-// one.
-int ThreadsOf(const TwinOptions& options) { return options.threads > 0 ? options.threads : options.color ? 3 : 2; }
 
 }  // namespace
 

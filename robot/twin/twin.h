@@ -47,7 +47,8 @@ struct TwinOptions {
   double drive_rate_hz = 50.0;
   Time end{0};  // WaitUntil returns false from here on
   // 1: everything runs on the caller's thread. 2: the cameras share a second thread. 3 or more: each camera has its
-  // own. 0: one thread for each camera besides the caller's. The bits are the same for any number.
+  // own. 0: one thread for each camera besides the caller's. From 2 on, one more thread shares the work of a depth frame
+  // that is large, or the only picture. The bits are the same for any number.
   int threads = 0;
 };
 
