@@ -29,6 +29,7 @@ struct Keyframe {
   Eigen::Vector3f camera_base{0, 0, 0};  // where the rays begin
   std::vector<PlacedView> views;         // its own first, then the newest of frames near it that are no key frames
   double in_local_map_m = 0.0;           // path_m at which its points were last put into the local map
+  bool first_of_run = false;             // no step leads to it: T_previous_base says nothing
 };
 
 // Roughly the middle of what a key frame sees. Two key frames see the same place where their view centres are near, and

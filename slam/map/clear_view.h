@@ -41,6 +41,18 @@ class ClearView {
   float left() const { return left_; }        // tangents y / x that bound it
   float right() const { return left_ + static_cast<float>(width_) / per_bin_; }
 
+  // visit(field) for all that a view holds, to write and read it (slam/saved_map.h).
+  template <class Visitor, class View>
+  static void VisitFields(Visitor& visit, View& view) {
+    visit(view.R_view_base_), visit(view.camera_base_);
+    visit(view.left_), visit(view.low_), visit(view.per_bin_), visit(view.reach_m_);
+    visit(view.width_), visit(view.height_), visit(view.lengths_);
+  }
+  // Holds for every view that was made of an observation, and must hold for one that was read.
+  bool IsWhole() const {
+    return width_ == 0 ? lengths_.empty() : lengths_.size() % width_ == 0 && lengths_.size() / width_ == height_;
+  }
+
  private:
   static constexpr float kUnit_m = 0.004f;
 
