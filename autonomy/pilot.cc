@@ -60,6 +60,10 @@ Decision Pilot::DecideByTask(const Situation& situation) {
   if (!situation.T_map_base) return Halt(Activity::kWaitsForHeading);
   Intent intent = behavior_(situation);
   if (intent.doing.empty()) intent.doing = Sentence(intent.activity);
+  if (situation.searching) {
+    intent.doing += " and searches for its place in the map";
+    intent.speed_m_s = std::min(intent.speed_m_s, config_.search_speed_m_s);
+  }
   if (intent.done || intent.speed_m_s <= 0.0)
     return {.command = Command(0.0, intent.steering_rad),
             .done = intent.done,

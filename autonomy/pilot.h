@@ -32,6 +32,7 @@ struct PilotConfig {
   double look_ahead_m = 0.9;     // [0.2, 5] of pure pursuit; longer is smoother, shorter follows the path more closely
   double command_valid_s = 0.3;  // [0.02, 5] the car brakes by itself when no command follows
   int lost_frames_max = 20;  // [1, 1000] frames in a row that do not fit the map; then the car stands until one fits
+  double search_speed_m_s = 0.3;  // [0.05, 2] at most, while the car searches for its place in a loaded map
   AvoidConfig avoid{};
   BackConfig back{};
   UnstickConfig unstick{};
@@ -46,6 +47,7 @@ void Visit(Visitor& v, PilotConfig& c) {
   v("look_ahead_m", c.look_ahead_m, {0.2, 5.0});
   v("command_valid_s", c.command_valid_s, {0.02, 5.0});
   v("lost_frames_max", c.lost_frames_max, {1.0, 1000.0});
+  v("search_speed_m_s", c.search_speed_m_s, {0.05, 2.0});
   v("avoid", c.avoid);
   v("back", c.back);
   v("unstick", c.unstick);

@@ -52,6 +52,14 @@ Localization Localizer::Localize(const Observation& observation, const VoxelMap&
   return {*T_map_last_, has_map ? last_.converged || on_new_ground || restarts : enough_points};
 }
 
+void Localizer::ChangeMap(const Pose& T_new_map, std::optional<double> heading_turn_rad) {
+  if (T_map_last_) T_map_last_ = T_new_map * *T_map_last_;
+  if (heading_turn_rad)
+    map_turn_rad_ = heading_turn_rad;
+  else if (map_turn_rad_)
+    map_turn_rad_ = WrapPi(*map_turn_rad_ + Yaw(T_new_map));
+}
+
 std::optional<double> Localizer::MapYaw_rad(const Observation& observation) const {
   if (!HasHeading(observation) || !map_turn_rad_) return std::nullopt;
   return WrapPi(observation.yaw_rad + *map_turn_rad_);

@@ -35,6 +35,11 @@ class Localizer {
   // Closed loops have moved the newest frame.
   void Correct(const Pose& T_map_base) { T_map_last_ = T_map_base; }
 
+  // The map frame is another one from now on. heading_turn_rad: yaw in it less the compass's; nothing: not known.
+  void ChangeMap(const Pose& T_new_map, std::optional<double> heading_turn_rad);
+  // Yaw in the map less the compass's; nothing before the first heading.
+  std::optional<double> heading_turn_rad() const { return map_turn_rad_; }
+
   // The observation's heading, in the map; nothing without a compass.
   std::optional<double> MapYaw_rad(const Observation& observation) const;
   const RegisterResult& last() const { return last_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "slam/map/moved_away.h"
@@ -16,6 +17,7 @@ constexpr double kRecent_m = 1.0;      // loops are searched with what was seen 
 constexpr double kNear_m = 4.0;        // former key frames with view centres nearer than this join the local map...
 constexpr int kRecalledPerFrame = 2;   // ...so many a frame: it keeps up at 4 m/s
 constexpr double kPruneEvery_m = 1.0;
+constexpr Duration kBetweenRuns = std::chrono::seconds(1);
 
 double DistanceOfViews_m(const Pose& a, const Pose& b) { return (ViewCentre(a) - ViewCentre(b)).norm(); }
 
@@ -39,7 +41,11 @@ void Mapper::EndFrame(double path_m) {
 
 // A new key frame, or, where the place has one already, one more view of it.
 void Mapper::Keep(const Observation& observation, const Pose& T_map_base, std::optional<double> yaw_rad) {
-  if (keyframes_.empty()) return AddKeyframe(observation, T_map_base, Pose::Identity(), yaw_rad);
+  if (keyframes_.empty()) {
+    AddKeyframe(observation, T_map_base, Pose::Identity(), yaw_rad);
+    keyframes_.back().first_of_run = true;
+    return;
+  }
   const Pose since = keyframes_.back().T_map_base.inverse() * T_map_base;
   const double view_turn_rad = Yaw(since) + observation.view_yaw_rad - keyframes_.back().view_yaw_rad;
   const double least_turn_rad =
@@ -95,7 +101,6 @@ Keyframe* Mapper::NearestOfFormerVisit(const Pose& T_map_base, double view_yaw_r
   return nearest;
 }
 
-// Of this frame and of the key frames on the last metre, in this frame's base, thinned.
 std::vector<Point> Mapper::RecentPoints(const Observation& observation, const Pose& T_map_base) const {
   std::vector<Point> points = observation.points_base;
   for (auto keyframe = keyframes_.rbegin(); keyframe != keyframes_.rend() && path_m_ - keyframe->path_m < kRecent_m;
@@ -122,19 +127,49 @@ Pose Mapper::CloseLoop(const Observation& observation, const Pose& T_map_base) {
   return T_map_corrected;
 }
 
-// The local map is made anew at once, because the next frame is registered against it.
 void Mapper::MoveKeyframes(const std::vector<Pose>& corrected) {
   for (std::size_t i = 0; i < corrected.size(); ++i) keyframes_[i].T_map_base = corrected[i];
   grid_.Renew();
+  RenewLocalMap();
+}
+
+// At once, because the next frame is registered against it.
+void Mapper::RenewLocalMap() {
+  const Pose T_map_newest = keyframes_.back().T_map_base;
   std::vector<PlacedPoints> near;
   for (Keyframe& keyframe : keyframes_) {
     const bool recent = path_m_ - keyframe.path_m < config_.local_length_m;
-    if (!recent && DistanceOfViews_m(keyframe.T_map_base, corrected.back()) > kNear_m) continue;
+    if (!recent && DistanceOfViews_m(keyframe.T_map_base, T_map_newest) > kNear_m) continue;
     near.push_back({keyframe.points_base, keyframe.T_map_base});
     keyframe.in_local_map_m = path_m_;
   }
   local_ = VoxelMap(config_.local);
   local_.InsertAll(near, path_m_);
+}
+
+// To the rest of the mapper the former run is an earlier visit: driven, and over, before this run began.
+void Mapper::Join(SavedMap former, const Pose& T_former_map, const Loop& place, double heading_turn_rad) {
+  const double earlier_m = former.keyframes.back().path_m + config_.loop.apart_m;
+  Time earlier = former.keyframes.back().stamp;
+  for (const Keyframe& keyframe : former.keyframes)
+    for (const PlacedView& placed : keyframe.views) earlier = std::max(earlier, placed.stamp);
+  earlier += kBetweenRuns;
+  for (Keyframe& keyframe : former.keyframes) {
+    keyframe.path_m -= earlier_m, keyframe.in_local_map_m -= earlier_m;
+    keyframe.stamp -= earlier;
+    for (PlacedView& placed : keyframe.views) placed.stamp -= earlier;
+  }
+  for (Keyframe& keyframe : keyframes_) {
+    keyframe.T_map_base = T_former_map * keyframe.T_map_base;
+    if (keyframe.yaw_rad) keyframe.yaw_rad = WrapPi(*keyframe.yaw_rad + heading_turn_rad);
+  }
+  const std::size_t before = former.keyframes.size();
+  former.keyframes.insert(former.keyframes.end(), std::make_move_iterator(keyframes_.begin()),
+                          std::make_move_iterator(keyframes_.end()));
+  keyframes_ = std::move(former.keyframes);
+  closer_.Join(former.loops, before, keyframes_, place, path_m_);
+  grid_.Restart(std::span(keyframes_).subspan(before));
+  RenewLocalMap();
 }
 
 // Puts what a former visit saw here into the local map, so that the next frames are registered against it.

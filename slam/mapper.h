@@ -18,6 +18,7 @@
 #include "slam/loop/loop_closer.h"
 #include "slam/map/keyframe_grid.h"
 #include "slam/map/voxel_map.h"
+#include "slam/saved_map.h"
 #include "slam/slam_config.h"
 
 namespace merlin {
@@ -30,6 +31,11 @@ class Mapper {
   // Adds a frame at a pose that can be trusted; path_m: distance driven until then; yaw_rad: its heading in the map, if
   // it has one. Returns the pose as the loops correct it that this frame closes.
   Pose Add(const Observation& observation, const Pose& T_map_base, double path_m, std::optional<double> yaw_rad);
+  // Puts the key frames of a former map before those of this run, and changes to its frame. place: where the frame that
+  // was added last is in the former map, in its frame. heading_turn_rad: what is added to the headings of this run.
+  void Join(SavedMap former, const Pose& T_former_map, const Loop& place, double heading_turn_rad);
+  // Of this frame and of the key frames on the last metre, in this frame's base, thinned.
+  std::vector<Point> RecentPoints(const Observation& observation, const Pose& T_map_base) const;
   // To be called at the end of each frame, added or not: lets go what lies far behind, goes on renewing the grid.
   void EndFrame(double path_m);
 
@@ -37,6 +43,7 @@ class Mapper {
   const VoxelMap& local_map() const { return local_; }
   const OccupancyGrid& occupancy() const { return grid_.grid(); }
   int loops() const { return closer_.loops(); }
+  const std::vector<GraphEdge>& loop_edges() const { return closer_.edges(); }
 
   VoxelMap BuildMap() const;
   OccupancyGrid BuildOccupancy() const { return GridOf(keyframes_, config_.occupancy); }
@@ -50,6 +57,7 @@ class Mapper {
   std::vector<Point> RecentPoints(const Observation& observation, const Pose& T_map_base) const;
   Pose CloseLoop(const Observation& observation, const Pose& T_map_base);
   void MoveKeyframes(const std::vector<Pose>& corrected);
+  void RenewLocalMap();
   void RecallFormerVisit(const Pose& T_map_base);
 
   SlamConfig config_;

@@ -17,6 +17,8 @@
 #include "slam/keyframe.h"
 #include "slam/localizer.h"
 #include "slam/mapper.h"
+#include "slam/place_search.h"
+#include "slam/saved_map.h"
 #include "slam/slam_config.h"
 
 namespace merlin {
@@ -29,8 +31,9 @@ struct MapPose {
 class Slam {
  public:
   // footprint: the car's. Where it drove nothing can still be in the map; an empty one clears nothing.
-  explicit Slam(const SlamConfig& config, const Footprint& footprint = {})
-      : localizer_(config), mapper_(config, footprint) {}
+  // former: a map of an earlier run to start in. The car begins with a map of its own and searches for its place in the
+  // former one (slam/place_search.h). Once it is found, the two are one map, in the frame of the former.
+  explicit Slam(const SlamConfig& config, const Footprint& footprint = {}, std::optional<SavedMap> former = {});
 
   // The pose at the observation's stamp. Nothing while mapping waits for the heading to settle at the start, and for an
   // odometry that is not finite. Map frame: see slam/localizer.h.
@@ -42,6 +45,17 @@ class Slam {
   // Registration takes back, or adds, a good share of the distance that the wheels reported last.
   bool slipping() const { return localizer_.slipping(); }
   double path_m() const { return localizer_.path_m(); }  // distance driven
+
+  // What became of the former map that was given.
+  enum class Search { kNone, kSearching, kGaveUp, kFound };
+  Search search() const { return search_state_; }
+  // What it took so far, or until it was found or given up.
+  struct SearchEffort {
+    double time_s = 0.0, path_m = 0.0;
+  };
+  const SearchEffort& search_effort() const { return effort_; }
+  // The map frame changed with the last frame, because the place was found; nothing: it is the same as before.
+  const std::optional<Pose>& T_map_before() const { return T_map_before_; }
 
   const VoxelMap& local_map() const { return mapper_.local_map(); }
   // A closed loop corrects poses, key frames and the local map at once. The grid follows later, so that no frame takes
@@ -57,6 +71,8 @@ class Slam {
   // The whole map, from all key frames, coloured; what moved away is left out. Use its voxels with at least
   // map_points_min points.
   VoxelMap BuildMap() const { return mapper_.BuildMap(); }
+  // All that is needed to go on with this map in another run.
+  SavedMap Saved() const { return {keyframes(), mapper_.loop_edges(), localizer_.heading_turn_rad()}; }
   // The whole grid, from all key frames as the closed loops correct them.
   OccupancyGrid BuildOccupancy() const { return mapper_.BuildOccupancy(); }
 
@@ -68,9 +84,17 @@ class Slam {
   };
 
   void Record(Time stamp, const Pose& T_map_base);
+  Pose SearchPlace(const Observation& observation, const Pose& T_map_base, bool trusted);
+  void Join(const Loop& place, const Pose& T_map_base);
 
+  SlamConfig config_;
   Localizer localizer_;
   Mapper mapper_;
+  Search search_state_ = Search::kNone;
+  std::optional<PlaceSearch> place_search_;  // only while it searches
+  SearchEffort effort_;
+  std::optional<Time> first_stamp_;
+  std::optional<Pose> T_map_before_;
   std::vector<MapPose> online_;
   std::vector<Step> steps_;  // of the online poses
 };

@@ -9,11 +9,34 @@
 
 namespace merlin {
 
+// The search for the car's place in the map of an earlier run (slam/place_search.h).
+struct SearchConfig {
+  double every_m = 0.25;     // [0.01, 10] distance driven between two searches...
+  double every_rad = 0.3;    // [0.01, 3.2] ...or turn
+  double heading_rad = 0.4;  // [0.01, 3.2] a place may contradict the compass by this much; steel bends it so far
+  int agreeing_min = 2;      // [1, 100] searches in a row must lead to the same place
+  double agreeing_m = 0.15;  // [0.001, 10] within this distance, and the same number of rad
+  double give_up_m = 15.0;   // [0.1, 1000] distance after which the car does not know the place: a long room's length
+  double give_up_s = 60.0;   // [1, 1e5] the same as a time: as long as that distance takes
+};
+
+template <class Visitor>
+void Visit(Visitor& v, SearchConfig& c) {
+  v("every_m", c.every_m, {0.01, 10.0});
+  v("every_rad", c.every_rad, {0.01, 3.2});
+  v("heading_rad", c.heading_rad, {0.01, 3.2});
+  v("agreeing_min", c.agreeing_min, {1.0, 100.0});
+  v("agreeing_m", c.agreeing_m, {0.001, 10.0});
+  v("give_up_m", c.give_up_m, {0.1, 1000.0});
+  v("give_up_s", c.give_up_s, {1.0, 1e5});
+}
+
 struct SlamConfig {
   VoxelMapConfig local;  // the map that each frame is registered against
   IcpConfig icp;
   OccupancyConfig occupancy;
   LoopConfig loop;
+  SearchConfig search;
 
   // Localisation: the guess that registration starts from, and how far it is trusted.
   double source_voxel_m = 0.08;     // [0.005, 1] registration gets one point of the frame per voxel of this edge
@@ -46,6 +69,7 @@ void Visit(Visitor& v, SlamConfig& c) {
   v("icp", c.icp);
   v("occupancy", c.occupancy);
   v("loop", c.loop);
+  v("search", c.search);
   v("source_voxel_m", c.source_voxel_m, {0.005, 1.0});
   v("source_points_min", c.source_points_min, {0.0, 1e6});
   v("local_length_m", c.local_length_m, {0.5, 1000.0});

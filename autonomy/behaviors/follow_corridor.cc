@@ -21,6 +21,7 @@ void AddStraight(std::vector<Eigen::Vector2d>& path, const Eigen::Vector2d& from
 
 Intent FollowCorridor::Decide(const Situation& situation) {
   const Pose& T_map_base = *situation.T_map_base;
+  if (situation.T_map_before) ChangeMap(*situation.T_map_before);
   if (!T_map_start_) Start(T_map_base);
   if (situation.taken_over) ForgetPlan();
   CountLaps(T_map_base);
@@ -44,6 +45,15 @@ void FollowCorridor::Start(const Pose& T_map_base) {
   T_map_start_ = T_map_base;
   last_yaw_rad_ = Yaw(T_map_base);
   hint_.yaw_rad = last_yaw_rad_;
+}
+
+// All that it remembers, in the new map frame.
+void FollowCorridor::ChangeMap(const Pose& T_map_before) {
+  if (T_map_start_) T_map_start_ = T_map_before * *T_map_start_;
+  last_yaw_rad_ = WrapPi(last_yaw_rad_ + Yaw(T_map_before));
+  hint_.yaw_rad = WrapPi(hint_.yaw_rad + Yaw(T_map_before));
+  for (Eigen::Vector2d& point : path_map_)
+    point = (T_map_before * Eigen::Vector3d(point.x(), point.y(), 0.0)).head<2>();
 }
 
 // A lap: the car has turned by a full circle and is back in the corridor of its start, just beyond the start line.

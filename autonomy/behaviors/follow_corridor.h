@@ -47,6 +47,7 @@ class FollowCorridor {
  private:
   void Start(const Pose& T_map_base);
   void CountLaps(const Pose& T_map_base);
+  void ChangeMap(const Pose& T_map_before);
   void ForgetPlan();
   void PlanAhead(const Situation& situation);
   void PlanTurn(const Corridor& corridor, const Pose& T_map_base, double side);

@@ -78,6 +78,7 @@ Scenario ReadScenario(const std::string& name, const std::vector<std::string>& o
   }
   anchor("room", scenario.room);
   anchor("car.model", scenario.car.model);
+  anchor("map", scenario.map);
   anchor("car.calibration", scenario.car.calibration);
   anchor("sensors.depth.camera", scenario.sensors.depth.camera);
   if (scenario.sensors.color) anchor("sensors.color.camera", scenario.sensors.color->camera);

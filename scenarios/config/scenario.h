@@ -130,6 +130,7 @@ struct Scenario {
   std::uint64_t seed = 1;
   Sensors sensors;
   Task task;
+  std::string map;  // map.slam of an earlier run: the car starts in it, and searches for its place; empty: a new map
   std::vector<sim::ObstacleConfig> obstacles;  // of the twin, as actors
   std::vector<sim::ActorConfig> actors;
   std::vector<CheckLimit> checks;
@@ -148,6 +149,7 @@ void Visit(Visitor& v, Scenario& c) {
   v("seed", c.seed);
   v("sensors", c.sensors);
   v("task", c.task);
+  v("map", c.map);
   v("obstacles", c.obstacles);
   v("actors", c.actors);
   v("checks", c.checks);

@@ -47,6 +47,8 @@ Measured Measure(const StackOutcome& outcome, const GroundTruth* truth, FirstFau
   metrics.distance_m = truth != nullptr ? PathLength_m(truth->path) : outcome.path_m;
   metrics.loops_closed = outcome.loops_closed;
   metrics.stack_ms = Percentiles(outcome.stack_ms);
+  metrics.place_found_s = outcome.place_found_s;
+  metrics.place_found_m = outcome.place_found_m;
   if (truth == nullptr) return measured;
   metrics.laps = CountLaps(truth->path, truth->outline_m);
   metrics.collisions = truth->collisions;

@@ -27,6 +27,8 @@ struct Metrics {
   std::optional<double> peak_rss_mb, stack_rss_mb;
   // Of scenarios with an obstacle only; left out of result.json where empty.
   std::optional<double> obstacle_gap_m, obstacle_stop_s;
+  // Of scenarios that start in a map only, and left out likewise: when the car knew its place in it, since the first frame.
+  std::optional<double> place_found_s, place_found_m;
 };
 
 // The one list of names: visit(name, figure) for each, in result.json's order.
@@ -56,6 +58,8 @@ void VisitMetrics(const Metrics& m, Visitor visit) {
   visit("stack_rss_mb", m.stack_rss_mb);
   visit("obstacle_gap_m", m.obstacle_gap_m);
   visit("obstacle_stop_s", m.obstacle_stop_s);
+  visit("place_found_s", m.place_found_s);
+  visit("place_found_m", m.place_found_m);
 }
 
 // Whether a run can know a figure at all. Without the truth: not what compares with it (the distance is the odometry's

@@ -79,7 +79,7 @@ std::string ToJson(const RunResult& result) {
   Json metrics = Json::object();
   VisitMetrics(result.metrics, [&metrics](std::string_view name, const auto& figure) {
     Json value = ToJsonValue(figure);
-    if (value.is_null() && name.starts_with("obstacle_")) return;
+    if (value.is_null() && (name.starts_with("obstacle_") || name.starts_with("place_"))) return;
     metrics[std::string(name)] = std::move(value);
   });
   Json versions = Json::object();

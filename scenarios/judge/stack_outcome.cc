@@ -33,13 +33,18 @@ Trajectory ToTrajectory(const std::vector<MapPose>& poses) {
 }  // namespace
 
 StackOutcome OutcomeOf(const Slam& slam, int points_min, const std::vector<double>& stack_ms) {
+  const bool found = slam.search() == Slam::Search::kFound;
+  const Slam::SearchEffort& effort = slam.search_effort();
   return {.estimate = ToTrajectory(slam.trajectory()),
           .online = ToTrajectory(slam.online()),
           .map = MapPoints(slam.BuildMap(), points_min),
           .grid = ToGridMap(slam.BuildOccupancy()),
           .path_m = slam.path_m(),
           .loops_closed = slam.loops(),
-          .stack_ms = stack_ms};
+          .stack_ms = stack_ms,
+          .map_slam = ToBytes(slam.Saved()),
+          .place_found_s = found ? std::optional(effort.time_s) : std::nullopt,
+          .place_found_m = found ? std::optional(effort.path_m) : std::nullopt};
 }
 
 }  // namespace merlin

@@ -48,6 +48,7 @@ Hashes WriteRun(const std::string& title, const StackOutcome& outcome, const Gro
   if (write("map.pgm", [&] { return ToPgm(outcome.grid); }))
     write("map.yaml", [&] { return ToMapYaml(outcome.grid, "map.pgm"); });
   write("map.png", [&] { return ToPng(PictureOf(title, outcome, truth, measured)); });
+  if (!outcome.map_slam.empty()) faults.Try([&] { folder.Write("map.slam", outcome.map_slam); });
   return hashes;
 }
 

@@ -31,12 +31,12 @@ Rig RigOf(const Robot& robot, const CarDescription& car) {
 }  // namespace
 
 DriveLoop::DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception,
-                     const SlamConfig& slam, const Task& task, const PilotConfig& pilot)
+                     const SlamConfig& slam, const Task& task, const PilotConfig& pilot, std::optional<SavedMap> former)
     : robot_(robot),
       exposure_(robot.depth->Info().sheet, robot.depth->Info().rate_hz, perception.integration),
       period_(FromSeconds(1.0 / robot.depth->Info().rate_hz)),
       pipeline_(RigOf(robot, car), perception),
-      slam_(slam, FootprintOf(car)),
+      slam_(slam, FootprintOf(car), std::move(former)),
       pilot_(car, task, pilot),
       energy_(car, pilot.energy),
       arbiter_(car, pilot.avoid, pilot.arbitrate),
@@ -87,6 +87,8 @@ void DriveLoop::Decide(const DepthFrame& frame) {
                                      .lost_frames = slam_.lost_frames(),
                                      .has_map = !slam_.keyframes().empty(),
                                      .holds_position = slam_.last().level_share >= kHeldShareMin,
+                                     .searching = slam_.search() == Slam::Search::kSearching,
+                                     .T_map_before = slam_.T_map_before(),
                                      .taken_over = before == Driver::kManual || before == Driver::kObstacleStop});
   if (energy_.level() == EnergyLevel::kLow) decision.doing += "; battery low";
   stack_ms_.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
@@ -170,6 +172,7 @@ LoopEnd DriveLoop::Drive(const std::atomic<bool>& stop, const LoopObserver& obse
     if (stop.load()) return LoopEnd::kInterrupted;
     if (!manual && state_.decision && !state_.decision->gives_up.empty()) return LoopEnd::kGivesUp;
     if (!manual && state_.energy == EnergyLevel::kEmpty) return LoopEnd::kBatteryEmpty;
+    if (!manual && slam_.search() == Slam::Search::kGaveUp) return LoopEnd::kPlaceUnknown;
     if (!state_.stop.empty()) return LoopEnd::kDeviceLost;
   }
   return LoopEnd::kTimeUp;

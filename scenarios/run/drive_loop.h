@@ -21,7 +21,17 @@
 
 namespace merlin {
 
-enum class LoopEnd { kTaskDone, kTimeUp, kInterrupted, kDeviceLost, kBatteryEmpty, kQuit, kGivesUp, kEndedFromOutside };
+enum class LoopEnd {
+  kTaskDone,
+  kTimeUp,
+  kInterrupted,
+  kDeviceLost,
+  kBatteryEmpty,
+  kPlaceUnknown,
+  kQuit,
+  kGivesUp,
+  kEndedFromOutside
+};
 
 // What an operator wants, asked at every tick.
 using ManualInput = std::function<ManualCommand(Time now)>;
@@ -31,14 +41,15 @@ using LoopObserver = std::function<bool(const LoopState&)>;
 
 class DriveLoop {
  public:
+  // former: the map of an earlier run to start in.
   DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception, const SlamConfig& slam,
-            const Task& task, const PilotConfig& pilot);
+            const Task& task, const PilotConfig& pilot, std::optional<SavedMap> former = {});
 
   // Until the task is done, the clock ends, stop is set, the battery is empty (autonomy/energy.h), the car does not get on
-  // (autonomy/unstick.h), a device without which the car must not drive has failed (autonomy/supervise.h), or the observer
-  // ends it. Then brakes, and waits until the car stands, as far as the clock permits. The same where something throws: the
-  // first exception leaves this function once the car stands. What a device throws, of whatever type, leaves it as a
-  // DeviceError that names the device.
+  // (autonomy/unstick.h), a device without which the car must not drive has failed (autonomy/supervise.h), the car gives up
+  // the search for its place in the former map, or the observer ends it. Then brakes, and waits until the car stands, as far
+  // as the clock permits. The same where something throws: the first exception leaves this function once the car stands.
+  // What a device throws, of whatever type, leaves it as a DeviceError that names the device.
   // With an operator the pilot only advises the arbiter (autonomy/arbitrate.h), its task has no end, it does not give up,
   // and an empty battery stops the pilot alone: the operator may bring the car home.
   LoopEnd Run(const std::atomic<bool>& stop, const LoopObserver& observer, const ManualInput& manual = {});

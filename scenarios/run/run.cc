@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "robot/base/error.h"
@@ -63,15 +66,15 @@ struct Ending {
 // One run of whatever robot: drive, judge, write.
 class Session {
  public:
-  Session(const RunOptions& options, Plug& plug, const CarDescription& car, double setup_s,
-          const std::atomic<bool>& stop)
+  Session(const RunOptions& options, Plug& plug, const CarDescription& car, std::optional<SavedMap> former,
+          double setup_s, const std::atomic<bool>& stop)
       : options_(options),
         plug_(plug),
         robot_(plug.robot()),
         stop_(stop),
         folder_(options.out),
         loop_(robot_, car, options.scenario.perception, options.scenario.slam, options.scenario.task,
-              options.scenario.pilot) {
+              options.scenario.pilot, std::move(former)) {
     folder_.Write("scenario.yaml", ToYaml(options.scenario));
     figures_.setup_s = setup_s;
   }
@@ -125,6 +128,19 @@ class Session {
     if (end == LoopEnd::kBatteryEmpty)
       return fmt::format("the battery is empty: {:.2f} V without the motor, and the car stops below {:.2f} V",
                          loop_.energy().rest_v().value_or(0.0), loop_.energy().stop_v());
+    return ReasonOfSearch(end);
+  }
+
+  // Why a car that was to start in a map is not known to be in it. With an operator nobody waits for that.
+  std::string ReasonOfSearch(LoopEnd end) const {
+    const Slam& slam = loop_.slam();
+    const std::string& map = options_.scenario.map;
+    if (end == LoopEnd::kPlaceUnknown)
+      return fmt::format("the car does not know this place in map {}: it searched for {:.1f} s and {:.1f} m", map,
+                         slam.search_effort().time_s, slam.search_effort().path_m);
+    const bool ended = end == LoopEnd::kTimeUp || end == LoopEnd::kTaskDone;
+    if (ended && !options_.manual && slam.search() == Slam::Search::kSearching)
+      return fmt::format("the run ended before the car found its place in map {}", map);
     return "";
   }
 
@@ -190,6 +206,17 @@ class Session {
   FirstFault faults_;
 };
 
+// The map to start in; nothing where the scenario names none. Throws InputError.
+std::optional<SavedMap> FormerMap(const RunOptions& options) {
+  const std::filesystem::path file = options.scenario.map;
+  if (file.empty()) return std::nullopt;
+  std::error_code ignored;
+  if (std::filesystem::equivalent(file.parent_path().empty() ? "." : file.parent_path(), options.out, ignored))
+    throw InputError("map", file.string() + " is in the folder that this run is to replace",
+                     "another folder for --out");
+  return ReadSavedMap(file);
+}
+
 }  // namespace
 
 RunReport RunScenario(const RunOptions& asked, const PlugMaker& make_plug, const std::atomic<bool>& stop) {
@@ -200,8 +227,9 @@ RunReport RunScenario(const RunOptions& asked, const PlugMaker& make_plug, const
   std::vector<std::string> warnings;
   const CarDescription car = BelievedCar(options.scenario.car);
   LeaveOutWhatTheCarLacks(car, options.scenario.sensors, warnings);
+  std::optional<SavedMap> former = FormerMap(options);
   const std::unique_ptr<Plug> plug = make_plug(options);
-  RunReport report = Session(options, *plug, car, SecondsSince(begin), stop).Run();
+  RunReport report = Session(options, *plug, car, std::move(former), SecondsSince(begin), stop).Run();
   warnings.insert(warnings.begin(), car.warnings.begin(), car.warnings.end());
   warnings.insert(warnings.begin(), options.scenario.warnings.begin(), options.scenario.warnings.end());
   for (const std::string& warning : warnings) report.note += (report.note.empty() ? "" : "; ") + warning;

@@ -81,6 +81,17 @@ std::optional<std::vector<Pose>> LoopCloser::Search(std::span<const Keyframe> ke
   return InPlane(keyframes, solved.poses);
 }
 
+void LoopCloser::Join(const std::vector<GraphEdge>& former, std::size_t former_keyframes,
+                      std::span<const Keyframe> keyframes, const Loop& place, double path_m) {
+  for (GraphEdge& edge : loops_) edge.from += former_keyframes, edge.to += former_keyframes;
+  loops_.insert(loops_.begin(), former.begin(), former.end());
+  loops_.push_back(EdgeOf(keyframes, place, place.T_map_base, config_));
+  joined_ += former.size() + 1;
+  recognised_m_ = searched_m_ = path_m;
+  correction_.reset();
+  agreeing_ = 0;
+}
+
 // Its poses are the key frames, then one at the map's origin, from which headings are measured.
 PoseGraph LoopCloser::Graph(std::span<const Keyframe> keyframes) const {
   PoseGraph graph;
@@ -92,9 +103,10 @@ PoseGraph LoopCloser::Graph(std::span<const Keyframe> keyframes) const {
     graph.poses.push_back(keyframe.T_map_base);
     if (i == 0) continue;
     const double root = std::sqrt(std::max(keyframe.path_m - keyframes[i - 1].path_m, kShortestStep_m));
-    graph.edges.push_back(
-        {i - 1, i, keyframe.T_previous_base,
-         DiagonalInformation(config_.path_sigma_m_per_sqrt_m * root, config_.turn_sigma_rad_per_sqrt_m * root)});
+    if (!keyframe.first_of_run)
+      graph.edges.push_back(
+          {i - 1, i, keyframe.T_previous_base,
+           DiagonalInformation(config_.path_sigma_m_per_sqrt_m * root, config_.turn_sigma_rad_per_sqrt_m * root)});
     if (!keyframe.yaw_rad) continue;
     Matrix6d heading = Matrix6d::Zero();
     heading(5, 5) = 1.0 / (std::pow(config_.heading_sigma_rad, 2) + std::pow(keyframe.yaw_sigma_rad, 2));

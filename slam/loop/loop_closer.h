@@ -37,8 +37,14 @@ class LoopCloser {
 
   // Distance driven since a former visit was last recognised; infinite where none was.
   double SinceLoop_m(double path_m) const { return path_m - recognised_m_.value_or(-HUGE_VAL); }
-  // Loops closed so far.
-  int loops() const { return static_cast<int>(loops_.size()); }
+  // Loops closed so far, and the edges of all loops that the map has.
+  int loops() const { return static_cast<int>(loops_.size() - joined_); }
+  const std::vector<GraphEdge>& edges() const { return loops_; }
+
+  // A former map was put before the key frames: its loops, the number of its key frames, and the place of the newest key
+  // frame in it. keyframes: all, in the former map's frame.
+  void Join(const std::vector<GraphEdge>& former, std::size_t former_keyframes, std::span<const Keyframe> keyframes,
+            const Loop& place, double path_m);
 
  private:
   static constexpr double kKnown_m = 3.0;
@@ -47,6 +53,7 @@ class LoopCloser {
 
   LoopConfig config_;
   std::vector<GraphEdge> loops_;
+  std::size_t joined_ = 0;  // of them: those of the former map, and the one that joined it
   double searched_m_ = 0.0;
   std::optional<double> recognised_m_;
   std::optional<Pose> correction_;  // T_map_map of the last search

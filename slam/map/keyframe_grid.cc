@@ -14,6 +14,12 @@ void Enter(OccupancyGrid& grid, const Keyframe& keyframe) {
 
 void KeyframeGrid::Add(const Keyframe& keyframe) { Enter(grid_, keyframe); }
 
+void KeyframeGrid::Restart(std::span<const Keyframe> at_once) {
+  grid_ = GridOf(at_once, config_);
+  next_.reset();
+  moved_ = true;
+}
+
 void KeyframeGrid::Follow(std::span<const Keyframe> keyframes) {
   if (!next_ && moved_) {
     next_.emplace(config_);

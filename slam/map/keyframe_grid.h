@@ -29,6 +29,8 @@ class KeyframeGrid {
   void Add(const Keyframe& keyframe);
   // The key frames have moved.
   void Renew() { moved_ = true; }
+  // The key frames are others, in another frame: those given are in the grid at once, all others follow.
+  void Restart(std::span<const Keyframe> at_once);
   // Goes on renewing; to be called once per frame. keyframes: all that were added, in that order.
   void Follow(std::span<const Keyframe> keyframes);
 

@@ -190,5 +190,90 @@ TEST(Slam, SaysThatItIsLostAndDrivesOnByOdometry) {
   EXPECT_FALSE(slam.last().converged);
 }
 
+// The map that a drive of 0.9 m along the room leaves. Its frame begins where the drive does.
+const Pose kT_world_former = FromXyYaw(-0.5, 0.0, 0.0);
+SavedMap FormerMap() {
+  Slam slam({});
+  for (int i = 0; i <= 60; ++i) EXPECT_TRUE(slam.Update(InRoom(FromXyYaw(-0.5 + 0.015 * i, 0.0, 0.0), 0.05 * i)));
+  return slam.Saved();
+}
+
+// What a car sees that starts elsewhere in the room, at the i-th frame; its odometry begins at zero.
+Pose Later(int i) { return FromXyYaw(0.1 + 0.015 * i, 0.3, 0.2); }
+Observation SeenLater(int i) {
+  Observation observation = InRoom(Later(i), 0.05 * i);
+  observation.T_odom_base = Later(0).inverse() * Later(i);
+  return observation;
+}
+
+TEST(SlamInAFormerMap, FindsItsPlaceAndGoesOnInThatMapsFrame) {
+  const SavedMap former = FormerMap();
+  Slam slam({}, {}, former);
+  EXPECT_EQ(slam.search(), Slam::Search::kSearching);
+  int changes = 0, frames = 0;
+  for (; frames <= 40 && changes == 0; ++frames) {
+    ASSERT_TRUE(slam.Update(SeenLater(frames)));
+    changes += slam.T_map_before().has_value();
+  }
+  ASSERT_EQ(slam.search(), Slam::Search::kFound);
+  EXPECT_GT(slam.search_effort().path_m, 0.2) << "two searches must agree";
+  for (const int last = frames + 10; frames < last; ++frames) {
+    const auto T_former_base = slam.Update(SeenLater(frames));
+    ASSERT_TRUE(T_former_base);
+    EXPECT_FALSE(slam.T_map_before());
+    const Pose error = (kT_world_former * *T_former_base).inverse() * Later(frames);
+    EXPECT_LT(error.translation().norm(), 0.02);
+    EXPECT_LT(std::abs(Yaw(error)), 0.01);
+  }
+  // The path before is in the same frame, and so are both runs' key frames.
+  for (const std::vector<MapPose>& path : {slam.online(), slam.trajectory()})
+    EXPECT_LT(((kT_world_former * path.front().T_map_base).inverse() * Later(0)).translation().norm(), 0.03);
+  ASSERT_GT(slam.keyframes().size(), former.keyframes.size());
+  EXPECT_LT(slam.keyframes()[former.keyframes.size() - 1].path_m, 0.0) << "the former run was before";
+  EXPECT_EQ(slam.keyframes()[former.keyframes.size()].path_m, 0.0);
+  EXPECT_EQ(slam.loops(), 0) << "it was joined, and closed none";
+}
+
+TEST(SlamInAFormerMap, IsTheSameWhetherTheMapWasInAFileOrNot) {
+  const SavedMap former = FormerMap(), read = ParseSavedMap(ToBytes(former), "map.slam");
+  Slam direct({}, {}, former), from_file({}, {}, read);
+  for (int i = 0; i <= 40; ++i)
+    ASSERT_EQ(direct.Update(SeenLater(i))->matrix(), from_file.Update(SeenLater(i))->matrix()) << i;
+  EXPECT_EQ(from_file.search(), Slam::Search::kFound);
+  EXPECT_EQ(ToBytes(direct.Saved()), ToBytes(from_file.Saved()));
+}
+
+// Half a turn fits the bare walls as well: a room that is the same from both ends, and no compass.
+TEST(SlamInAFormerMap, TakesNoPlaceWhereAnotherFitsToo) {
+  Slam slam({}, {}, FormerMap());
+  for (int i = 0; i <= 40; ++i) {
+    Observation blind = SeenLater(i);
+    blind.stamp += std::chrono::seconds(3);
+    blind.yaw_sigma_rad = std::numeric_limits<double>::infinity();
+    std::erase_if(blind.points_base, [&](const Point& point) {
+      const Eigen::Vector3d p_world = Later(i) * point.position.cast<double>();
+      return std::abs(p_world.x()) < 1.9 && std::abs(p_world.y()) < 1.4 && p_world.z() > 0.01;  // no pillar
+    });
+    slam.Update(blind);
+  }
+  EXPECT_EQ(slam.search(), Slam::Search::kSearching);
+}
+
+TEST(SlamInAFormerMap, GivesUpInAForeignPlaceAndKeepsItsOwnMap) {
+  SlamConfig config;
+  config.search.give_up_s = 1.5;
+  Slam slam(config, {}, FormerMap());
+  for (int i = 0; i <= 40; ++i) {
+    Observation foreign = SeenLater(i);
+    for (Point& point : foreign.points_base) point.position.head<2>() *= 1.6f;  // a larger room
+    foreign.T_odom_base.translation() *= 1.6;
+    ASSERT_TRUE(slam.Update(foreign));
+    EXPECT_EQ(slam.search(), i <= 30 ? Slam::Search::kSearching : Slam::Search::kGaveUp) << i;
+  }
+  EXPECT_GT(slam.keyframes().size(), 5u);
+  EXPECT_TRUE(slam.keyframes().front().first_of_run);
+  EXPECT_EQ(slam.keyframes().front().T_map_base.translation().head<2>(), Eigen::Vector2d::Zero());
+}
+
 }  // namespace
 }  // namespace merlin

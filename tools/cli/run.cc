@@ -77,6 +77,9 @@ void PrintSummary(const RunReport& report, const std::filesystem::path& out) {
   if (!report.note.empty()) fmt::print("  note: {}\n", report.note);
   fmt::print("  drove {} m in {} s, laps: {}, collisions: {}\n", Number(m.distance_m, 2), Number(m.sim_time_s, 1),
              Number(m.laps), Number(m.collisions));
+  if (m.place_found_s)
+    fmt::print("  found its place in the map after {} s and {} m\n", Number(m.place_found_s, 1),
+               Number(m.place_found_m, 2));
   if (m.map_size_m[0] && m.map_size_m[1])
     fmt::print("  map {} x {} m, off the plan by {} and {} %\n", Number(m.map_size_m[0], 2), Number(m.map_size_m[1], 2),
                Number(m.map_size_error_percent[0], 2), Number(m.map_size_error_percent[1], 2));

@@ -167,5 +167,16 @@ TEST(Scenario, SetsOverrideTheFileAndAreCheckedAlike) {
   EXPECT_EQ(ReadScenario(file.string(), {}).seed, 3u);
 }
 
+TEST(Scenario, FindsAMapBesideItsFileAndOneThatIsSetFromWhereItIsStarted) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "s.yaml";
+  std::ofstream(file) << "room: hall\nmap: runs/a/map.slam\n";
+  EXPECT_EQ(ReadScenario(file.string(), {}).map, "runs/a/map.slam") << "no such file yet";
+  std::filesystem::create_directories(folder.path() / "runs/a");
+  std::ofstream(folder.path() / "runs/a/map.slam") << "a map";
+  EXPECT_EQ(ReadScenario(file.string(), {}).map, (folder.path() / "runs/a/map.slam").string());
+  EXPECT_EQ(ReadScenario(file.string(), {"map=runs/a/map.slam"}).map, "runs/a/map.slam");
+}
+
 }  // namespace
 }  // namespace merlin

@@ -92,9 +92,10 @@ TEST(Evaluate, DoesNotJudgeWithoutTruthWhatComparesWithIt) {
     EXPECT_FALSE(EvaluateOne(name, 0, {}, false).pass) << name;
     EXPECT_TRUE(EvaluateOne(name, 0, {}, true).judged) << name;
   }
-  for (const char* name : {"sim_time_s_min", "wall_time_s_max", "setup_s_max", "real_time_factor_min", "distance_m_min",
-                           "loops_closed_min", "depth_frames_min", "color_frames_min", "frames_dropped_max",
-                           "stack_ms.p50_max", "peak_rss_mb_max", "stack_rss_mb_max"})
+  for (const char* name :
+       {"sim_time_s_min", "wall_time_s_max", "setup_s_max", "real_time_factor_min", "distance_m_min",
+        "loops_closed_min", "place_found_s_max", "place_found_m_max", "depth_frames_min", "color_frames_min",
+        "frames_dropped_max", "stack_ms.p50_max", "peak_rss_mb_max", "stack_rss_mb_max"})
     EXPECT_TRUE(EvaluateOne(name, 0, {}, false).judged) << name;
   EXPECT_FALSE(EvaluateOne("stack_rss_mb_max", 512, {}, true).judged);  // the simulation shares the process
   Metrics metrics;

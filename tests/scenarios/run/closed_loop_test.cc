@@ -62,7 +62,7 @@ TEST(CorridorShort, LeavesTheFilesOfARun) {
   DriveScenario("corridor_short", out, {"duration_s=4"}, 2, Gl::kOff);
   for (const char* name :
        {"result.json", "junit.xml", "scenario.yaml", "trajectory_estimate.tum", "trajectory_online.tum",
-        "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png"})
+        "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png", "map.slam"})
     EXPECT_GT(std::filesystem::file_size(out / name), 0u) << name;
   // The resolved scenario is a scenario, and the same one.
   const std::string text = ToYaml(ReadScenario((out / "scenario.yaml").string(), {}));

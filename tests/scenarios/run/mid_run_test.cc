@@ -208,7 +208,7 @@ TEST(BadState, EndsTheRunAsOurOwnFaultWithEveryFile) {
   EXPECT_TRUE(report.result.metrics.ate_rmse_m);
   for (const char* name :
        {"result.json", "junit.xml", "scenario.yaml", "trajectory_estimate.tum", "trajectory_online.tum",
-        "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png"})
+        "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png", "map.slam"})
     EXPECT_GT(std::filesystem::file_size(folder.path() / "a" / name), 0u) << name;
   for (const char* name : {"result.json", "junit.xml"})
     EXPECT_NE(Contents(folder.path() / "a" / name).find("MuJoCo stopped at "), std::string::npos) << name;

@@ -27,7 +27,7 @@ TEST_P(ShippedScenario, RunsForThreeSeconds) {
   EXPECT_GE(report.result.metrics.depth_frames.value_or(0), 2.8 * options.scenario.sensors.depth.rate_hz);
   for (const char* file :
        {"result.json", "junit.xml", "scenario.yaml", "trajectory_estimate.tum", "trajectory_online.tum",
-        "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png"})
+        "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png", "map.slam"})
     EXPECT_TRUE(std::filesystem::is_regular_file(out / file)) << file;
 }
 
