@@ -54,7 +54,6 @@ class Mapper {
                    std::optional<double> yaw_rad);
   void AddView(const Observation& observation, const Pose& T_map_base, Keyframe& keyframe);
   Keyframe* NearestOfFormerVisit(const Pose& T_map_base, double view_yaw_rad);
-  std::vector<Point> RecentPoints(const Observation& observation, const Pose& T_map_base) const;
   Pose CloseLoop(const Observation& observation, const Pose& T_map_base);
   void MoveKeyframes(const std::vector<Pose>& corrected);
   void RenewLocalMap();

@@ -44,7 +44,7 @@ template <class Visitor>
 void Fields(Visitor& visit, Is<Keyframe> auto& keyframe) {
   visit(keyframe.stamp), visit(keyframe.T_map_base), visit(keyframe.T_previous_base), visit(keyframe.first_of_run);
   visit(keyframe.path_m), visit(keyframe.in_local_map_m), visit(keyframe.yaw_rad), visit(keyframe.yaw_sigma_rad);
-  visit(keyframe.camera_base), visit(keyframe.points_base), visit(keyframe.views);
+  visit(keyframe.view_yaw_rad), visit(keyframe.camera_base), visit(keyframe.points_base), visit(keyframe.views);
 }
 template <class Visitor>
 void Fields(Visitor& visit, Is<GraphEdge> auto& edge) {
@@ -127,7 +127,9 @@ class MapReader {
   void operator()(std::optional<double>& value) {
     bool has_value = false;
     (*this)(has_value), (*this)(value.emplace());
-    if (!has_value) value.reset();
+    if (has_value) return;
+    if (std::bit_cast<std::uint64_t>(*value) != 0) Fail();
+    value.reset();
   }
   // What is reserved is no more than what the rest can hold, whatever the count says.
   template <class Value>
@@ -159,7 +161,7 @@ bool IsPose(const Pose& pose) {
 bool IsSound(const Keyframe& keyframe) {
   return IsPose(keyframe.T_map_base) && IsPose(keyframe.T_previous_base) && std::isfinite(keyframe.path_m) &&
          std::isfinite(keyframe.in_local_map_m) && std::isfinite(keyframe.yaw_rad.value_or(0.0)) &&
-         keyframe.yaw_sigma_rad >= 0.0 && keyframe.camera_base.allFinite() &&
+         keyframe.yaw_sigma_rad >= 0.0 && std::isfinite(keyframe.view_yaw_rad) && keyframe.camera_base.allFinite() &&
          std::ranges::all_of(keyframe.views, [](const PlacedView& placed) {
            return IsPose(placed.T_keyframe_base) && placed.view.IsWhole();
          });
