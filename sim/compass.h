@@ -1,4 +1,4 @@
-// The attitude sensor: the true attitude plus noise. Steel nearby bends the magnetic field, and so the yaw.
+// The simulated attitude sensor: true attitude plus noise. Steel nearby distorts the magnetic field, and so the yaw.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ struct CompassConfig {
   std::vector<Steel> steel{};
 };
 
-// What steel adds to the yaw there [rad].
+// The yaw error that steel causes at a position in the world frame [rad].
 double BendAt(const std::vector<Steel>& steel, double x_m, double y_m);
 
-// The index-th reading. All three angles in (-pi, pi]. With the nose straight up or down (pitch +-pi/2) roll and yaw
-// are not defined, as on any such sensor.
+// The reading with this index (which selects its noise). All angles are in (-pi, pi]. At a pitch of +-pi/2 roll and yaw
+// are undefined, as with any such sensor.
 CompassReading ReadCompass(const Pose& T_world_base, const CompassConfig& config, std::uint64_t seed, Time stamp,
                            std::uint64_t index);
 

@@ -40,7 +40,7 @@ mjsBody* AddBody(mjSpec* spec, const std::string& name, const mjsDefault* plain)
   return body;
 }
 
-// Null: the spec has one of that name already.
+// Gives the geom a material by name. Returns the material if it had to be added to the spec, else null.
 mjsMaterial* SetMaterial(mjSpec* spec, const std::string& name, const mjsDefault* plain, mjsGeom* geom) {
   if (name.empty()) return nullptr;
   mjs_setString(geom->material, name.c_str());
@@ -50,7 +50,7 @@ mjsMaterial* SetMaterial(mjSpec* spec, const std::string& name, const mjsDefault
   return material;
 }
 
-// Stands on the ground, its middle above the body's origin.
+// The shape stands on the ground, centred above the body's origin.
 void AddShape(mjSpec* spec, mjsBody* body, const ShapeKind& kind, const std::vector<double>& size_m,
               const std::string& material, const std::string& name, const mjsDefault* plain) {
   mjsGeom* geom = mjs_addGeom(body, plain);
@@ -59,7 +59,7 @@ void AddShape(mjSpec* spec, mjsBody* body, const ShapeKind& kind, const std::vec
   geom->contype |= kMeetsCar;
   for (std::size_t i = 0; i < size_m.size(); ++i) geom->size[i] = size_m[i] / 2.0;
   geom->pos[2] = size_m.back() / 2.0;
-  if (kind.type == mjGEOM_CAPSULE) geom->size[1] -= geom->size[0];  // MuJoCo's is without the caps
+  if (kind.type == mjGEOM_CAPSULE) geom->size[1] -= geom->size[0];  // MuJoCo's half length excludes the caps
   SetMaterial(spec, material, plain, geom);
 }
 
@@ -76,8 +76,8 @@ ModelPtr CompileModel(const ActorConfig& actor) {
   ModelPtr model(mj_compile(spec.get(), nullptr), mj_deleteModel);
   if (!model) throw RoomError(file, "the actor does not compile", mjs_getError(spec.get()));
   if (model->njnt > 0)
-    throw InputError(file.string(), "an actor moves as one body", "no joints", fmt::format("{}", model->njnt));
-  if (model->ngeom == 0) throw InputError(file.string(), "an actor of nothing", "one geom or more");
+    throw InputError(file.string(), "an actor must be rigid", "no joints", fmt::format("{}", model->njnt));
+  if (model->ngeom == 0) throw InputError(file.string(), "the actor has no geoms", "one geom or more");
   for (int geom = 0; geom < model->ngeom; ++geom)
     if (const int type = model->geom_type[geom]; type == mjGEOM_PLANE || type == mjGEOM_HFIELD || type == mjGEOM_SDF)
       throw InputError(file.string(), "'" + GeomName(model.get(), geom) + "' cannot be part of an actor",
@@ -99,11 +99,12 @@ void SetMesh(mjSpec* spec, const mjModel* model, int geom, const std::string& na
   SetName(mesh->element, name);
   mjs_setFloat(mesh->uservert, corners.data(), static_cast<int>(corners.size()));
   mjs_setInt(mesh->userface, triangles.data(), static_cast<int>(triangles.size()));
-  mesh->inertia = mjMESH_INERTIA_SHELL;  // of no consequence; the others refuse a mesh that is open
+  mesh->inertia = mjMESH_INERTIA_SHELL;  // not used, but the other kinds reject open meshes
   mjs_setString(to->meshname, name.c_str());
 }
 
-// Copied geom by geom: attaching the model's spec would need prefixes, and materials go by their names.
+// Copies one geom. Attaching the model's spec would be shorter, but it adds prefixes to material names, which must
+// stay.
 void AddModelGeom(mjSpec* spec, mjsBody* body, const mjModel* model, int from, const Pose& T_actor_geom,
                   const mjsDefault* plain) {
   const std::string name = fmt::format("{}_{}", mjs_getString(mjs_getName(body->element)), GeomName(model, from));

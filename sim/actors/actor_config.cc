@@ -12,7 +12,7 @@
 namespace merlin::sim {
 namespace {
 
-// Collects what is wrong with one actor, a sentence each.
+// Collects the faults of one actor, one sentence each.
 class ActorCheck {
  public:
   explicit ActorCheck(const ActorConfig& actor) : actor_(actor) {
@@ -45,8 +45,8 @@ class ActorCheck {
     if (actor_.model.empty() == actor_.shape.empty())
       return Add("model, shape", "expected one of the two", actor_.model.empty() ? "none" : "both");
     if (!actor_.model.empty()) {
-      if (!actor_.size_m.empty()) Add("size_m", "expected with a shape only", "it with a model");
-      if (!actor_.material.empty()) Add("material", "expected with a shape only", "it with a model");
+      if (!actor_.size_m.empty()) Add("size_m", "expected only together with a shape", "it with a model");
+      if (!actor_.material.empty()) Add("material", "expected only together with a shape", "it with a model");
       return;
     }
     const std::vector<std::string>& shapes = ActorShapes();

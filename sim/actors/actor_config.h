@@ -1,5 +1,5 @@
-// What stands in the car's way or moves about, as a scenario describes it. An actor goes along a path at given times,
-// whatever the car does (unless it waits for the car); an obstacle appears ahead of the car at an instant and stays.
+// Actors and obstacles as a scenario describes them. An actor follows a path with given times, independent of the car
+// unless it waits for it. An obstacle appears ahead of the car at a given time and does not move.
 #pragma once
 
 #include <optional>
@@ -10,24 +10,25 @@
 
 namespace merlin::sim {
 
-// Made of a model (an MJCF file) or of one shape, not of both. Its frame: x forward, y left, z up, the origin on the
-// ground below its middle.
+// An actor has either a model (an MJCF file) or one shape. Its frame: x forward, y left, z up, origin on the ground
+// below its middle.
 struct ActorConfig {
-  std::string name{};   // letters, digits, '_' and '-'; no two actors share one
-  std::string model{};  // an MJCF file: geoms, meshes and colours count, textures do not; joints are refused
-  std::string shape{};  // box, sphere, capsule, cylinder or ellipsoid; a mesh comes in a model
-  // Full edges of the shape [m]: box and ellipsoid length, width, height; capsule (caps included) and cylinder diameter,
-  // height; sphere diameter.
+  std::string name{};   // letters, digits, '_' and '-'; unique
+  std::string model{};  // an MJCF file; geoms, meshes and colours are used, textures are not; must not have joints
+  std::string shape{};  // box, sphere, capsule, cylinder or ellipsoid; for a mesh use a model
+  // Full dimensions of the shape [m]. Box and ellipsoid: length, width, height. Capsule (with its caps) and cylinder:
+  // diameter, height. Sphere: diameter.
   std::vector<double> size_m{};
-  std::string material{};  // of the shape: a name in materials.yaml; empty: what an unnamed material is
-  // Points [t_s, x_m, y_m], [t_s, x_m, y_m, yaw_rad] or [t_s, x_m, y_m, yaw_rad, z_m] of the actor's frame in the world,
-  // all of one length; t_s grows, from 0 on. Linear in between (yaw, too: 0 to 6.28 is a whole turn), at rest after the
-  // last. Without yaw the actor faces where it goes. It is not there before the first time.
+  std::string material{};  // of the shape: a name in materials.yaml; empty: the default material
+  // Points [t_s, x_m, y_m], [t_s, x_m, y_m, yaw_rad] or [t_s, x_m, y_m, yaw_rad, z_m] of the actor's frame in the
+  // world, all of the same length; t_s starts at 0 or later and increases. Linear between points (also in yaw: from 0
+  // to 6.28 is a full turn), at rest after the last. Without yaw the actor faces its direction of motion. It appears at
+  // the first t_s.
   std::vector<std::vector<double>> path{};
-  // While the car is nearer than this ahead of it, it stands still, and goes on later by as much; 0: it never waits.
+  // The actor stops while the car is nearer than this ahead of it, and then continues with that delay; 0: never stops.
   double wait_for_car_m = 0.0;
-  std::optional<double> until_s{};  // run time from when on it is gone; none: it stays
-  std::string where{};              // "file:line" of its description, for messages; not a key of it
+  std::optional<double> until_s{};  // run time at which it disappears; none: never
+  std::string where{};              // "file:line" in the scenario, for messages; not a key
 };
 
 template <class Visitor>
@@ -42,17 +43,17 @@ void Visit(Visitor& v, ActorConfig& c) {
   v("until_s", c.until_s, {0.0, 1e6});
 }
 
-// A box that appears ahead of the car and goes away again.
+// A box that appears ahead of the car and disappears again.
 struct ObstacleConfig {
   double appear_s = 0.0;  // run time
   double disappear_s = 1e6;
-  double ahead_m = 3.0;   // its near face before the car's base_link along the car's heading at that instant
-  double left_m = 0.0;    // its middle to the left of it
-  double length_m = 0.4;  // edges along the heading, across, up
+  double ahead_m = 3.0;   // distance of its near face from base_link, along the car's heading when it appears
+  double left_m = 0.0;    // offset of its middle to the left of that line
+  double length_m = 0.4;  // along the heading; width across it, height upwards
   double width_m = 0.4;
   double height_m = 0.5;
   std::string material = "dark_box";
-  std::string where{};  // "file:line" of its description, for messages; not a key of it
+  std::string where{};  // "file:line" in the scenario, for messages; not a key
 };
 
 template <class Visitor>
@@ -67,8 +68,8 @@ void Visit(Visitor& v, ObstacleConfig& c) {
   v("material", c.material);
 }
 
-// Throws InputError for everything in these actors that is wrong by itself, a line each: names, model and shape, sizes,
-// paths, times. What depends on the room and the car, the world refuses.
+// Throws InputError with one line for each fault in names, model and shape, sizes, paths and times. World checks what
+// depends on the room and the car.
 void RefuseFaults(const std::vector<ActorConfig>& actors);
 
 }  // namespace merlin::sim

@@ -76,7 +76,7 @@ void Actors::Move(mjData* data, Time now, const Pose& T_world_base) {
   }
 }
 
-void Actors::Look(const mjModel* model, const mjData* data) {
+void Actors::UpdateWaiting(const mjModel* model, const mjData* data) {
   for (One& one : all_) {
     if (!one.present || !one.path || one.wait_m <= 0.0) continue;
     const double along_s = Seconds(last_) - one.waited_s;
@@ -121,11 +121,11 @@ Actors::Nearest Actors::NearestToCar(const mjModel* model, const mjData* data, c
   for (int geom = first; geom < first + model->body_geomnum[one.body]; ++geom) {
     if (model->geom_contype[geom] == 0 && model->geom_conaffinity[geom] == 0) continue;
     for (const int car : car_geoms_) {
-      // Spheres around the two first: most pairs are far apart, and their exact distance costs microseconds.
+      // Bounding spheres first: most pairs are far apart, and an exact distance takes microseconds.
       const double apart_m = mju_dist3(data->geom_xpos + 3 * geom, data->geom_xpos + 3 * car);
       if (apart_m - model->geom_rbound[geom] - model->geom_rbound[car] >= nearest.distance_m) continue;
       mjtNum from_to[6];
-      // MuJoCo asks for a writable mjData for its scratch stack; the state stays as it is.
+      // MuJoCo needs a writable mjData for its scratch stack; the state does not change.
       const double distance_m =
           mj_geomDistance(model, const_cast<mjData*>(data), car, geom, nearest.distance_m, from_to);
       if (distance_m >= nearest.distance_m) continue;

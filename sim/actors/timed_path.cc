@@ -9,7 +9,7 @@ TimedPath::TimedPath(const std::vector<std::vector<double>>& points) : faces_ahe
   for (const std::vector<double>& p : points)
     points_.push_back({p[0], {p[1], p[2], p.size() > 4 ? p[4] : 0.0}, p.size() > 3 ? p[3] : 0.0});
   if (!faces_ahead_) return;
-  // A leg without a direction of its own keeps that of the leg before; the first ones take that of the first that has one.
+  // A leg of zero length takes the direction of the leg before it, or of the first leg that has one.
   bool known = false;
   double yaw_rad = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {

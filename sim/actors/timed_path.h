@@ -1,4 +1,4 @@
-// Where an actor is at each instant, and how fast.
+// The path of an actor: pose and velocity at each time.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,16 @@
 
 namespace merlin::sim {
 
-// Straight and even between points, at rest before the first and after the last.
+// Straight at constant speed between points, at rest before the first and after the last.
 class TimedPath {
  public:
-  // Points as ActorConfig::path has them, which RefuseFaults has passed.
+  // points: ActorConfig::path, checked by RefuseFaults.
   explicit TimedPath(const std::vector<std::vector<double>>& points);
 
-  // Of the actor's frame, world frame. At a point: the velocity with which it goes on.
+  // Motion of the actor's frame in the world. At a point of the path the velocity is that of the next leg.
   BodyMotion At(double t_s) const;
   double begin_s() const { return points_.front().t_s; }
-  // [point], world frame.
+  // The points of the path in the world frame.
   std::vector<Eigen::Vector3d> positions_m() const;
 
  private:
@@ -26,7 +26,7 @@ class TimedPath {
     double yaw_rad;
   };
   std::vector<Point> points_;
-  bool faces_ahead_;  // yaw is that of the leg from the point on, not in between
+  bool faces_ahead_;  // a point's yaw is the direction of the next leg, and is not interpolated
 };
 
 }  // namespace merlin::sim

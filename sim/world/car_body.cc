@@ -11,7 +11,7 @@
 namespace merlin::sim::car_body {
 namespace {
 
-constexpr double kPanInertia_kg_m2 = 2e-3;  // of the servo behind its gear; guess, as the steering servo's
+constexpr double kPanInertia_kg_m2 = 2e-3;  // of the pan servo at its output; a guess, as for the steering servo
 
 void SetPose(const Pose& pose, double pos[3], double quat[4]) {
   const Eigen::Quaterniond q(pose.linear());
@@ -20,7 +20,7 @@ void SetPose(const Pose& pose, double pos[3], double quat[4]) {
 }
 
 void SetInertial(const CarLink& link, mjsBody* body) {
-  // ipos is NaN until it is set, and mass would be ignored in favour of the geoms' without explicitinertial.
+  // ipos is NaN until it is set. Without explicitinertial MuJoCo would compute the mass from the geoms.
   body->mass = link.mass_kg;
   Eigen::Vector3d::Map(body->ipos) = link.T_link_inertial.translation();
   const Eigen::Matrix3d rotation = link.T_link_inertial.linear();
@@ -30,10 +30,10 @@ void SetInertial(const CarLink& link, mjsBody* body) {
   body->explicitinertial = 1;
 }
 
-// A joint moves where the car drives or steers; other joints are held at 0. How far the knuckles turn is their
-// linkage's business (see sim/drive/drivetrain.h).
 bool IsPan(const CarDescription& car, std::size_t index) { return car.pan && car.pan->moves && car.pan->link == index; }
 
+// Joints of wheels, knuckles and the pan unit move; all others are fixed at 0. The knuckles' range is set by the
+// steering linkage (sim/drive/drivetrain.h).
 bool Moves(const CarDescription& car, std::size_t index) {
   return FindWheel(car, index) != nullptr || std::ranges::find(car.knuckles, index) != car.knuckles.end() ||
          IsPan(car, index);
@@ -46,8 +46,9 @@ void AddJoint(const CarDescription& car, std::size_t index, const mjsDefault* pl
   joint->type = mjJNT_HINGE;
   Eigen::Vector3d::Map(joint->axis) = car.links[index].axis;
   joint->limited = mjLIMITED_FALSE;
-  // A quarter of the rotor for each wheel: behind ideal differentials the motor turns with the mean of the four, and
-  // MuJoCo takes only the diagonal of an inertia set on the motor or tendon.
+  // Each wheel carries a quarter of the rotor's inertia, because behind ideal differentials the motor turns at the mean
+  // speed of the four wheels. It is set here because MuJoCo would use only the diagonal of an inertia set on the motor
+  // or the tendon.
   if (FindWheel(car, index) != nullptr)
     joint->armature = car.drivetrain.rotor_inertia_kg_m2 * car.drivetrain.gear * car.drivetrain.gear / 4.0;
   if (IsPan(car, index)) joint->armature = kPanInertia_kg_m2;
@@ -73,7 +74,7 @@ void SetMesh(mjSpec* spec, const CarShape& shape, const std::string& name, const
   mjs_setFloat(mesh->uservert, vertices.data()->data(), static_cast<int>(3 * vertices.size()));
   mjs_setInt(mesh->userface, triangles.data()->data(), static_cast<int>(3 * triangles.size()));
   Eigen::Vector3d::Map(mesh->scale) = shape.size_m;
-  mesh->inertia = mjMESH_INERTIA_SHELL;  // of no consequence; the others refuse a mesh that is open
+  mesh->inertia = mjMESH_INERTIA_SHELL;  // not used, but the other kinds reject open meshes
   geom->type = mjGEOM_MESH;
   mjs_setString(geom->meshname, name.c_str());
 }
@@ -104,15 +105,16 @@ mjsGeom* AddShape(mjSpec* spec, const CarShape& shape, const std::string& name, 
   return geom;
 }
 
-// Meets what of the room is solid, never the car itself: wheels may steer past the chassis. Friction and stiffness are
-// the car's alone: else the larger friction of the pair would count, and a floor's default is 1.
+// Touches the solid parts of the room but never the car itself, because steered wheels may overlap the chassis. The
+// priority makes the car's friction and stiffness count: otherwise MuJoCo would use the larger friction of the pair,
+// and a floor's default is 1.
 void SetCollides(mjsGeom* geom) {
   geom->group = kCollisionGroup;
   geom->contype = kCarItself, geom->conaffinity = kMeetsCar;
   geom->priority = kCarPriority;
 }
 
-// Values found to roll truly: circles within 0.1 % of Ackermann's radius, no drift at rest.
+// Contact values tuned so that the car drives circles within 0.1 % of Ackermann's radius and does not drift at rest.
 void AddTyre(const CarDescription& car, const CarWheel& wheel, const mjsDefault* plain, mjsBody* body) {
   mjsGeom* geom = mjs_addGeom(body, plain);
   SetName(geom->element, car.links[wheel.link].name + "_collision_0");
@@ -135,8 +137,9 @@ void AddVisual(mjSpec* spec, const CarLink& link, const mjsDefault* plain, mjsBo
   }
 }
 
-// The body whose part a link is when it meets the room: its own if it moves against its parent, else the one it is fixed
-// to. Six bodies to hold against every wall instead of a dozen: physics alone is a quarter faster.
+// The body that gets a link's collision shapes: the link's own if it moves relative to its parent, else the body that
+// it is fixed to. Collision detection then tests six bodies instead of a dozen, which makes physics alone a quarter
+// faster.
 struct Carrier {
   mjsBody* body;
   Pose T_carrier_link;

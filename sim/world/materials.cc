@@ -7,8 +7,8 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kRetroGainMax = 1e4;  // brighter ones are typing errors
-constexpr double kRounding = 1e-12;    // of a sum of two decimal numbers
+constexpr double kRetroGainMax = 1e4;  // a larger value is taken for a typing error
+constexpr double kRounding = 1e-12;    // rounding error of a sum of two decimal numbers
 
 }  // namespace
 

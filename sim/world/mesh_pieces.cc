@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kWeld_m = 1e-6;
 constexpr double kAreaMin_m2 = 1e-9;
-constexpr double kPlane_m = 2e-4;          // of a polygon's corners from its plane
-constexpr double kPlaneCosine = 1 - 1e-5;  // 0.26 deg between the triangles of one polygon
-constexpr double kConvexShare = 1e-6;      // of the area that a hull may have more than its polygons
+constexpr double kPlane_m = 2e-4;          // largest distance of a polygon's corners from its plane
+constexpr double kPlaneCosine = 1 - 1e-5;  // triangles of one polygon differ in direction by 0.26 deg at most
+constexpr double kConvexShare = 1e-6;      // share by which a hull's area may exceed that of its polygons
 
 using Corners = std::vector<Eigen::Vector3d>;
 using Triangle = std::array<int, 3>;
 
-class Groups {  // union-find; the smallest member speaks for the group
+class Groups {  // union-find; the smallest member represents its group
  public:
   explicit Groups(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
   int Of(int i) {
@@ -39,7 +39,7 @@ Eigen::Vector3d TwiceArea(const Corners& vertices, const Triangle& t) {
   return (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
 }
 
-// Equal places have one number, triangles without an area are gone.
+// Merges vertices at the same place and drops triangles without area.
 TriangleMesh Weld(const TriangleMesh& mesh) {
   TriangleMesh welded;
   std::map<std::array<long long, 3>, int> known;
@@ -60,7 +60,8 @@ TriangleMesh Weld(const TriangleMesh& mesh) {
 
 struct Edge {
   std::vector<int> triangles;
-  int balance = 0;  // +1 for each triangle that runs along it upwards, -1 downwards
+  int balance =
+      0;  // +1 for each triangle that traverses it from the lower to the higher vertex index, -1 for the reverse
 };
 using Edges = std::map<std::pair<int, int>, Edge>;
 
@@ -76,13 +77,13 @@ Edges EdgesOf(const TriangleMesh& mesh) {
   return edges;
 }
 
-// Where two triangles meet.
+// An edge shared by two triangles.
 struct Border {
   double length_m;
   int a, b;
 };
 
-// Triangles connected by edges, and whether every edge has two that run along it in opposite directions.
+// Triangles connected by edges. Closed: every edge has exactly two triangles, which traverse it in opposite directions.
 struct Part {
   std::vector<int> triangles;
   std::vector<Border> borders;
@@ -117,7 +118,7 @@ Corners CornersOf(const TriangleMesh& mesh, const Part& part) {
   return corners;
 }
 
-// No corner lies before a face of the part by more than the excess.
+// Whether no corner lies outside a face of the part by more than kHullExcess_m.
 bool IsBehind(const TriangleMesh& mesh, const Part& body, const Corners& corners) {
   return std::ranges::all_of(body.triangles, [&](int t) {
     const Eigen::Vector3d normal = TwiceArea(mesh.vertices, mesh.triangles[t]).normalized();
@@ -137,7 +138,7 @@ struct Polygon {
   double area_m2;
 };
 
-// The convex hull, seen along the normal (Andrew, Information Processing Letters 9(5), 1979).
+// Convex hull of the corners projected along the normal (Andrew, Information Processing Letters 9(5), 1979).
 Polygon HullInPlane(const Corners& corners, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
   struct Seen {
@@ -151,14 +152,14 @@ Polygon HullInPlane(const Corners& corners, const Eigen::Vector3d& normal) {
     return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
   };
   std::vector<Seen> hull;
-  for (const int pass : {0, 1}) {  // lower chain, then the upper one backwards
+  for (const int pass : {0, 1}) {  // first the lower chain, then the upper one from right to left
     const std::size_t from = hull.size();
     for (const Seen& point : seen) {
       while (hull.size() >= from + 2 && cross(hull[hull.size() - 2], hull.back(), point) <= 0.0) hull.pop_back();
       hull.push_back(point);
     }
     if (pass == 0) std::ranges::reverse(seen);
-    hull.pop_back();  // begins the other chain
+    hull.pop_back();  // it is the first point of the other chain
   }
   Polygon polygon{.corners = {}, .normal = normal, .area_m2 = 0.0};
   for (std::size_t i = 0; i < hull.size(); ++i) {
@@ -169,7 +170,7 @@ Polygon HullInPlane(const Corners& corners, const Eigen::Vector3d& normal) {
   return polygon;
 }
 
-// Both as one, if they lie in one plane and their union is convex.
+// The union of both polygons, if they lie in one plane and it is convex.
 std::optional<Polygon> Joined(const Polygon& a, const Polygon& b) {
   if (a.normal.dot(b.normal) < kPlaneCosine) return std::nullopt;
   const double offset_m = a.normal.dot(a.corners[0]);
@@ -184,7 +185,7 @@ std::optional<Polygon> Joined(const Polygon& a, const Polygon& b) {
   return joined;
 }
 
-// Joins neighbours across their longest edges first, until no two can be.
+// Joins neighbouring triangles into convex polygons, across the longest edges first, until no two can be joined.
 std::vector<Polygon> PolygonsOf(const TriangleMesh& mesh, const Part& part) {
   std::map<int, Polygon> polygons;
   for (const int t : part.triangles) {
@@ -194,7 +195,7 @@ std::vector<Polygon> PolygonsOf(const TriangleMesh& mesh, const Part& part) {
   }
   std::vector<Border> borders = part.borders;
   std::ranges::stable_sort(borders, std::greater{}, &Border::length_m);
-  std::map<int, int> joined_to;  // a triangle's polygon went there
+  std::map<int, int> joined_to;  // a polygon that is gone, and the one that took it over
   const auto polygon_of = [&](int t) {
     while (joined_to.contains(t)) t = joined_to.at(t);
     return t;
@@ -226,10 +227,10 @@ Corners Sheet(const Polygon& polygon) {
 
 }  // namespace
 
-std::optional<std::vector<Corners>> ConvexPieces(const TriangleMesh& mesh, std::size_t most) {
+std::optional<std::vector<Corners>> ConvexPieces(const TriangleMesh& mesh, std::size_t max_pieces) {
   const TriangleMesh welded = Weld(mesh);
   const std::vector<Part> parts = PartsOf(welded, EdgesOf(welded));
-  if (parts.size() > most) return std::nullopt;
+  if (parts.size() > max_pieces) return std::nullopt;
   std::vector<Corners> corners;
   for (const Part& part : parts) corners.push_back(CornersOf(welded, part));
   std::vector<Corners> pieces;
@@ -241,7 +242,7 @@ std::optional<std::vector<Corners>> ConvexPieces(const TriangleMesh& mesh, std::
     } else {
       for (const Polygon& polygon : PolygonsOf(welded, part)) pieces.push_back(Sheet(polygon));
     }
-    if (pieces.size() > most) return std::nullopt;
+    if (pieces.size() > max_pieces) return std::nullopt;
   }
   return pieces;
 }

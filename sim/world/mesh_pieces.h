@@ -1,5 +1,5 @@
-// Cuts a mesh into convex pieces. MuJoCo lets a mesh collide as its convex hull, and the hull of a room's shell would fill
-// the room.
+// Cuts a mesh into convex pieces. MuJoCo collides a mesh as its convex hull, which for the mesh of a whole room would
+// fill the room.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,19 +15,21 @@ struct TriangleMesh {
   std::vector<std::array<int, 3>> triangles;
 };
 
-// A hull that exceeds the mesh by no more than this fills no free space that matters.
+// A part whose hull extends beyond it by no more than this counts as convex.
 constexpr double kHullExcess_m = 0.005;
-// How thick a sheet is made, half to either side: a convex piece needs some volume.
+// Thickness of a sheet, half on each side of its plane: a convex piece needs some volume.
 constexpr double kSheet_m = 0.0004;
 
-// The corners of convex bodies that together are the mesh, in the order of its triangles:
-//  - each part (triangles connected by edges) that is closed, faces outward and is convex within kHullExcess_m and
-//    has no other part within: its corners, a solid body;
-//  - of each other part its surface: neighbouring triangles of one plane joined as long as they stay convex, each of these
-//    polygons a sheet of kSheet_m. What such a part encloses is free, as it is seen.
-// One piece with all corners: the mesh is convex, and MuJoCo's hull is the mesh. None: it would take more than most.
-// Vertices within 1 um are one. Triangles without an area count for nothing.
-std::optional<std::vector<std::vector<Eigen::Vector3d>>> ConvexPieces(const TriangleMesh& mesh, std::size_t most);
+// The corners of convex bodies that together make up the mesh, in the order of its triangles. A part is a set of
+// triangles connected by edges.
+//  - A part that is closed, faces outward, is convex within kHullExcess_m and holds no other part becomes one solid
+//    body.
+//  - Of any other part only the surface becomes solid: neighbouring triangles in one plane are joined while their union
+//    stays convex, and each polygon becomes a sheet of thickness kSheet_m. The space that such a part encloses stays
+//    free.
+// A convex mesh gives one piece with all corners. None if there would be more pieces than max_pieces. Vertices within
+// 1 um of each other are merged; triangles without area are ignored.
+std::optional<std::vector<std::vector<Eigen::Vector3d>>> ConvexPieces(const TriangleMesh& mesh, std::size_t max_pieces);
 
 // Whether the mesh is one closed, convex part (see above).
 bool IsConvex(const TriangleMesh& mesh);

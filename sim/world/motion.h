@@ -1,4 +1,4 @@
-// Where bodies are at one instant and how they move: enough for the milliseconds of an exposure.
+// Poses and velocities of bodies at one instant, from which their motion during an exposure (milliseconds) follows.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -15,7 +15,7 @@ struct BodyMotion {
   Eigen::Vector3d angular_velocity_rad_s{0, 0, 0};  // world frame
 
   bool still() const { return velocity_m_s.isZero(0.0) && angular_velocity_rad_s.isZero(0.0); }
-  // At constant velocity: over the 10 ms of an exposure 2 m/s^2 would add 0.1 mm.
+  // The pose dt_s later at constant velocity. An acceleration of 2 m/s^2 would add 0.1 mm over an exposure of 10 ms.
   Pose At(double dt_s) const {
     const Eigen::Vector3d turn_rad = dt_s * angular_velocity_rad_s;
     const double angle_rad = turn_rad.norm();
@@ -24,7 +24,7 @@ struct BodyMotion {
     if (angle_rad > 0.0) pose.linear() = Eigen::AngleAxisd(angle_rad, turn_rad / angle_rad) * T_world_body.linear();
     return pose;
   }
-  // The same for what is fixed to this body.
+  // The motion of a part that is fixed to this body.
   BodyMotion Of(const Pose& T_body_part) const {
     const Pose T_world_part = T_world_body * T_body_part;
     return {T_world_part,
@@ -35,9 +35,9 @@ struct BodyMotion {
 
 using BodyMotions = std::vector<BodyMotion>;  // [body id]
 
-// Of every body as the state has it.
+// The motion of every body in the current state.
 BodyMotions MotionsOf(const mjModel* model, const mjData* data);
-// Of every body where the model puts it before anything has moved, at rest.
+// Every body at rest in the model's reference pose.
 BodyMotions AtRest(const mjModel* model);
 
 }  // namespace merlin::sim

@@ -12,7 +12,7 @@ namespace {
 
 constexpr char kServo[] = "pan_servo";
 
-// As the steering servo's (sim/drive/drivetrain.cc): guesses.
+// Guesses, the same as for the steering servo (sim/drive/drivetrain.cc).
 constexpr double kStiffness_n_m_rad = 20.0;
 constexpr double kDamping_n_m_s_rad = 0.4;
 

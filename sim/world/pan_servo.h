@@ -1,5 +1,6 @@
-// The servo that turns both cameras about the vertical: a stiff position loop with slew, 0 to 180 deg at its horn and
-// 90 ahead (thesis, section 6's future), which is -90 to 90 deg here. It holds its angle when nothing is sent.
+// The servo that pans both cameras about the vertical axis: a stiff position loop with a limited slew rate. The servo
+// of the thesis (proposed in its section 6 as future work) turns from 0 to 180 deg and points ahead at 90 deg; here the
+// angle runs from -90 to 90 deg and 0 points ahead. The servo holds its angle between commands.
 //
 // The thesis: "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination",
 // University of Siegen, about 2011.
@@ -13,13 +14,14 @@ namespace merlin::sim {
 
 class PanServo {
  public:
-  // Adds the servo to a spec that holds the joint of car.pan.
+  // Adds the servo's actuator to a spec that already has the joint of car.pan.
   static void AddTo(mjSpec* spec, const CarDescription& car);
 
   PanServo() = default;
   PanServo(const mjModel* model, const CarDescription& car);
 
-  // Of the cameras, counter-clockwise seen from above, 0: ahead. Clamped to the joint's limits; not finite: ignored.
+  // Sets the pan angle of the cameras: counter-clockwise seen from above, 0 points ahead. Clamped to the joint's
+  // limits; a value that is not finite is ignored.
   void Send(double angle_rad);
   // Writes data->ctrl for the coming step.
   void Apply(mjData* data) const { data->ctrl[ctrl_] = target_rad_; }

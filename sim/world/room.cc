@@ -17,10 +17,10 @@ namespace {
 // MuJoCo's own handler prints, writes a file and exits.
 void OnMujocoMessage(const mjLogMessage* message) {
   if (message->level == mjLOG_ERROR) throw std::runtime_error(std::string("MuJoCo: ") + message->subject);
-  // Warnings of a simulation are counted in mjData::warning, where World::Step looks.
+  // Warnings during a simulation are counted in mjData::warning, which World::Step checks.
 }
 
-// "file:12" where the message names a line of that file, else "file".
+// "file:12" if the message names a line, else "file".
 std::string Where(const std::filesystem::path& file, const std::string& message) {
   std::smatch line;
   const std::regex pattern("line[ =:]*([0-9]+)", std::regex::icase);
@@ -45,7 +45,7 @@ void DrawCurtain(mjSpec* spec, const std::filesystem::path& room, bool closed) {
     if (mjs_delete(spec, geom) != 0) throw std::runtime_error(std::string("MuJoCo: ") + mjs_getError(spec));
 }
 
-// A room that includes another says in the text leave_out which of its geoms it does not have.
+// Removes the geoms that the custom text leave_out lists.
 void LeaveOut(mjSpec* spec, const std::filesystem::path& room) {
   mjsElement* const text = mjs_findElement(spec, mjOBJ_TEXT, "leave_out");
   if (text == nullptr) return;
@@ -53,13 +53,13 @@ void LeaveOut(mjSpec* spec, const std::filesystem::path& room) {
   for (std::string name; names >> name;) {
     mjsElement* const geom = mjs_findElement(spec, mjOBJ_GEOM, name.c_str());
     if (geom == nullptr)
-      throw InputError(room.string(), "the text leave_out names a geom that is not there", "names of geoms",
+      throw InputError(room.string(), "the text leave_out lists a geom that does not exist", "names of geoms",
                        "'" + name + "'");
     if (mjs_delete(spec, geom) != 0) throw std::runtime_error(std::string("MuJoCo: ") + mjs_getError(spec));
   }
 }
 
-// Arena, contacts and constraints as many as it takes.
+// Lets MuJoCo choose the sizes of its arena, contacts and constraints.
 void ResetSizes(mjSpec* spec) {
   spec->memory = spec->nstack = -1;
   spec->njmax = spec->nconmax = -1;
@@ -71,7 +71,7 @@ bool ChangesMasses(const mjsCompiler& compiler) {
 }
 
 void KeepMasses(mjSpec* room, const mjModel* alone) {
-  int id = 0;  // in the order of bodies, the world's first
+  int id = 0;  // the spec lists bodies in the order of their ids, the world first
   for (mjsElement* e = mjs_firstElement(room, mjOBJ_BODY); e != nullptr; e = mjs_nextElement(room, e), ++id) {
     if (alone->body_weldid[id] == 0) continue;
     mjsBody* body = mjs_asBody(e);
@@ -107,7 +107,7 @@ SpecPtr ReadRoom(const std::filesystem::path& room, bool curtain_closed) {
 }
 
 ModelPtr CompileAlone(const std::filesystem::path& room, bool curtain_closed) {
-  const SpecPtr spec = ReadRoom(room, curtain_closed);  // not mj_copySpec: it leaves out what names something missing
+  const SpecPtr spec = ReadRoom(room, curtain_closed);  // mj_copySpec would drop elements with unresolved references
   spec->compiler.fusestatic = spec->compiler.discardvisual = spec->compiler.alignfree = 0;
   ResetSizes(spec.get());
   for (mjsElement* e = mjs_firstElement(spec.get(), mjOBJ_JOINT); e != nullptr; e = mjs_nextElement(spec.get(), e))

@@ -1,4 +1,4 @@
-// Reads a room's MJCF with MuJoCo, and turns MuJoCo's errors into ours.
+// Reads a room's MJCF file with MuJoCo, and turns MuJoCo's errors into InputError.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -11,32 +11,33 @@
 
 namespace merlin::sim {
 
-// From here on errors of MuJoCo itself throw std::runtime_error, in the whole process; it prints and logs nothing.
+// After this call, and in the whole process, MuJoCo throws std::runtime_error on an error and prints and logs nothing.
 void SilenceMujoco();
 
-// The error of a room that MuJoCo refuses, with its line where MuJoCo's message knows it.
+// The error for a room that MuJoCo rejects, with the line number if MuJoCo's message has one.
 InputError RoomError(const std::filesystem::path& room, const std::string& what, const std::string& mujoco_message);
 
-// Parsed, not compiled. Geoms named "curtain*" stay where the room has them, or are taken out: an open curtain stops
-// neither camera nor sun. Geoms that the text "leave_out" names are taken out: so a room can include another one and change
-// a part of it. Silences MuJoCo. Throws InputError: no such file, no MJCF, a curtain to close where there is none, a geom to
-// leave out that is not there.
+// Parses the room without compiling it. Geoms named "curtain*" are kept if the curtain is closed and removed if it is
+// open, so that neither cameras nor sunlight meet them. Geoms listed in the custom text "leave_out" are removed as
+// well: a room can include another one and replace a part of it. Silences MuJoCo. Throws InputError if the file is
+// missing or not MJCF, if the curtain is to be closed and there is none, or if leave_out lists a geom that does not
+// exist.
 SpecPtr ReadRoom(const std::filesystem::path& room, bool curtain_closed);
 
-// The room compiled for itself, as its own compiler options say, with geoms and bodies in the order of ReadRoom's spec; its
-// meshes get no convex hulls. Throws InputError as ReadRoom does, and where the room does not compile: also where it names
-// what it does not have, such as parts of the car.
+// Compiles the room without the car and with its own compiler options. Geoms and bodies have the order of ReadRoom's
+// spec; meshes get no convex hulls. Throws InputError like ReadRoom, and if the room does not compile, for example
+// because it refers to parts of the car.
 ModelPtr CompileAlone(const std::filesystem::path& room, bool curtain_closed);
 
-// Takes out of the spec what would reach a car that is added to it: physics options, compiler options (the room's moving
-// bodies keep the masses and inertias that these gave them in alone), sizes, keyframes (which have no place for the
-// car).
+// Removes from the room's spec what would change a car added to it: physics options, compiler options, sizes, and
+// keyframes (which hold no state for the car). The room's moving bodies keep the masses and inertias that its compiler
+// options gave them in alone.
 void KeepFromCar(mjSpec* room, const mjModel* alone);
 
-// "wall_north", or "geom 12" for one without a name.
+// The geom's name, for example "wall_north"; "geom 12" if it has none.
 std::string GeomName(const mjModel* model, int geom);
 
-// Whether a point lies in a sphere, capsule, cylinder, ellipsoid or box, standing where data has it; false for others.
+// Whether a point lies in a sphere, capsule, cylinder, ellipsoid or box at its pose in data; false for other shapes.
 bool IsInside(const mjModel* model, const mjData* data, int geom, const mjtNum point_world[3]);
 
 }  // namespace merlin::sim

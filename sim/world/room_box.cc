@@ -5,7 +5,7 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-// In the geom's own frame; empty for a plane without end.
+// In the geom's frame; empty for an infinite plane.
 Box LocalBox_m(const mjModel* model, int geom) {
   const Eigen::Vector3d size = Eigen::Vector3d::Map(model->geom_size + 3 * geom);
   if (model->geom_type[geom] == mjGEOM_PLANE) {
@@ -26,7 +26,7 @@ Pose T_world_geom(const mjData* data, int geom) {
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Even-odd rule: a line from the point to the right meets the outline an odd number of times.
+// Even-odd rule: a point is inside if a ray from it to the right crosses the outline an odd number of times.
 bool Holds(const std::vector<Eigen::Vector2d>& outline, const Eigen::Vector2d& p) {
   bool inside = false;
   for (std::size_t i = 0; i < outline.size(); ++i) {

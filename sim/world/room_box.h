@@ -1,4 +1,4 @@
-// Where a room ends, seen from above.
+// The extent of a room, seen from above.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,14 +9,14 @@
 
 namespace merlin::sim {
 
-// The floor plan's bounding box [m], x and y in the world's frame: of all geoms but the car's, actors', obstacles' and
-// planes without end. Empty: there are none, or the car does not stand in it (the room lies beside the car).
+// Bounding box of the floor plan [m], x and y in the world frame. It holds all geoms except those of the car, actors
+// and obstacles, and except infinite planes. None if there are no such geoms, or if the car stands outside the box.
 std::optional<Eigen::AlignedBox2d> RoomBox_m(const World& world);
 
-// The corners of the room's plan ("plan_xy_m"), else of its box. Empty: the room has no end.
+// The corners of the room's plan ("plan_xy_m") if it has one, else of its box; empty if there is no box either.
 std::vector<Eigen::Vector2d> RoomOutline_m(const World& world);
 
-// Whether all of the straight line between two points lies within the outline (a simple polygon).
+// Whether the straight line between two points lies entirely within the outline (a simple polygon).
 bool HoldsLine(const std::vector<Eigen::Vector2d>& outline_m, const Eigen::Vector2d& from_m,
                const Eigen::Vector2d& to_m);
 

@@ -13,13 +13,13 @@ namespace {
 constexpr double kGrid_m = 0.025;
 constexpr int kGridMax = 64;
 constexpr double kSampledPlane_m = 50.0;
-constexpr double kFacesUp = 0.7;  // z of a plane's normal from where on one can stand on it
+constexpr double kFacesUp = 0.7;  // a plane whose normal has a larger z faces up
 
 using Points = std::vector<Eigen::Vector3d>;
 
 int Steps(double length_m) { return std::clamp(static_cast<int>(std::ceil(length_m / kGrid_m)), 1, kGridMax); }
 
-// centre + a u + b v for a, b in [-1, 1].
+// Adds points centre + a u + b v for a, b in [-1, 1].
 void AddRectangle(Points& points, const Eigen::Vector3d& centre, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
   const int m = Steps(2 * u.norm()), n = Steps(2 * v.norm());
   for (int i = 0; i <= m; ++i)
@@ -115,7 +115,7 @@ Eigen::Vector3d Nearest(const Eigen::Vector3d& p, const Eigen::Vector3d& a, cons
   return a + (vb * ab + vc * ac) / (va + vb + vc);
 }
 
-// Under which a triangle is seen from p (Van Oosterom, Strackee, IEEE Trans. Biomedical Engineering 30(2), 1983).
+// Solid angle of a triangle seen from p (Van Oosterom, Strackee, IEEE Trans. Biomedical Engineering 30(2), 1983).
 double SolidAngle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                   const Eigen::Vector3d& c) {
   const Eigen::Vector3d u = a - p, v = b - p, w = c - p;

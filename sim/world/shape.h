@@ -1,4 +1,4 @@
-// The shapes of a model's geoms in the world: points all over a surface, and how far a point is from a solid.
+// Geometry of a model's geoms: sample points on a surface, and the distance of a point from a solid.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -10,33 +10,33 @@
 
 namespace merlin::sim {
 
-// Of a finite plane where it collides as it is seen, see sim/world/solid.h.
+// Thickness of the slab as which a panel collides (sim/world/solid.h).
 constexpr double kSlab_m = 0.05;
 
-// In the geom's frame.
+// The triangles of a mesh geom, in the geom's frame.
 TriangleMesh MeshOf(const mjModel* model, int geom);
 
-// Seen by the cameras: geom group 0-2 and not wholly transparent (the material's alpha counts where there is one).
+// Whether the cameras see the geom: its group is 0 to 2 and its alpha (of its material, if it has one) is above 0.
 bool IsSeen(const mjModel* model, int geom);
 
-// Its name is floor*.
+// Whether its name begins with "floor".
 bool IsFloor(const mjModel* model, int geom);
 
-// A plane that ends where it is seen to end: it has a size, is no floor*, and either collides with nothing or does
-// not face up. MuJoCo's own planes, and so all others, are infinite for what touches them.
+// Whether a plane counts as a finite panel: it has a size, is not named floor*, and either has no contact bits or does
+// not face up. All other planes are infinite in contacts, as MuJoCo treats them.
 bool IsPanel(const mjModel* model, const mjData* data, int geom);
 
-// Points on the geom's surface, a grid of 2.5 cm, coarser where that would be more than 64 of them along an edge; an
-// infinite plane as far as 50 m. None for a height field or signed distance field. World frame.
+// Points on the geom's surface in the world frame, in a grid of 2.5 cm or of 64 steps along an edge, whichever is
+// coarser. An infinite plane is sampled to 50 m from its origin. Empty for a height field or signed distance field.
 std::vector<Eigen::Vector3d> PointsOn(const mjModel* model, const mjData* data, int geom);
 
-// How far points are from one geom's matter; 0 inside. A plane's matter is all that lies below it (a panel's: kSlab_m),
-// an ellipsoid's distance is approximate, a mesh is what its triangles enclose, not its hull.
+// A geom as a solid body, for distances. A plane is solid everywhere below its surface, a panel down to kSlab_m. A mesh
+// is the volume that its triangles enclose, not their hull. The distance from an ellipsoid is approximate.
 class Solid {
  public:
   Solid(const mjModel* model, const mjData* data, int geom);
   int geom() const { return geom_; }
-  // Exact up to max_m, beyond it any number above max_m.
+  // 0 inside. Exact up to max_m; for points farther away, any number above max_m.
   double Distance_m(const Eigen::Vector3d& point_world, double max_m) const;
 
  private:
@@ -46,7 +46,7 @@ class Solid {
   bool panel_;
   Eigen::Vector3d position_, size_;
   Eigen::Matrix3d R_world_geom_;
-  double reach_m_;  // of the geom from its position; 0: no end
+  double reach_m_;  // radius of the sphere around its position that holds the geom; 0: infinite
   TriangleMesh mesh_;
 };
 

@@ -16,9 +16,9 @@ namespace merlin::sim {
 namespace {
 
 constexpr char kPieceMark = '#';
-constexpr int kPieceGroup = 3;  // neither drawn nor met by a camera's ray
+constexpr int kPieceGroup = 3;  // not drawn, and ignored by the rays of the depth camera
 
-// MuJoCo's default bits, which the car had for as long as rooms were written for it.
+// Whether it shares a bit with MuJoCo's defaults (1 and 1), for which rooms are usually written.
 bool MeetsDefault(const mjsGeom* geom) { return (geom->contype & 1) != 0 || (geom->conaffinity & 1) != 0; }
 
 bool Collides(const mjsGeom* geom) { return geom->contype != 0 || geom->conaffinity != 0; }
@@ -55,7 +55,7 @@ class Judge {
     return meets;
   }
 
-  // Whether a floor stands for a part of this geom, the corners of which are in its frame.
+  // Whether a floor stands in for a part of this geom. corners: of that part, in the geom's frame.
   bool LiesOnFloor(int geom, const std::vector<Eigen::Vector3d>& corners) const {
     if (IsFloor(model_, geom)) return false;
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data_->geom_xmat + 9 * geom);
@@ -87,7 +87,7 @@ class Judge {
     return body != 0 && body == model_->geom_bodyid[geom] ? kStandsForInBody_m : kStandsFor_m;
   }
 
-  // Which colliding geoms do; empty: they do not.
+  // The colliding geoms that together stand in for this one; empty if they leave a point uncovered.
   std::vector<int> StandsFor(int geom) const {
     struct Candidate {
       const Solid* solid;
@@ -111,11 +111,11 @@ class Judge {
   std::unique_ptr<mjData, void (*)(mjData*)> data_;
   std::vector<Material> materials_;
   std::vector<mjsGeom*> geoms_;
-  std::vector<Solid> solids_, floors_;  // what collides; what of it carries the car
+  std::vector<Solid> solids_, floors_;  // all colliding geoms; the floors among those that touch the car
   std::vector<int> grounds_;
 };
 
-// Adds a geom that collides in place of another one of the same body; its pose and size are the caller's.
+// Adds a geom that collides in place of another one of the same body. The caller sets its pose and size.
 mjsGeom* AddPiece(mjsGeom* of, const std::string& name, const mjsDefault* plain) {
   mjsGeom* piece = mjs_addGeom(mjs_getParent(of->element), plain);
   SetName(piece->element, name);
@@ -137,7 +137,7 @@ void SetPose(const mjModel* alone, int geom, const Eigen::Vector3d& offset, mjsG
   std::copy_n(alone->geom_quat + 4 * geom, 4, piece->quat);
 }
 
-// As it is seen: from the plane down.
+// The slab's top is the visible plane.
 void AddSlab(const mjModel* alone, int geom, mjsGeom* of, const mjsDefault* plain) {
   mjsGeom* piece = AddPiece(of, GeomName(alone, geom) + kPieceMark + "1", plain);
   piece->type = mjGEOM_BOX;
@@ -167,8 +167,7 @@ void AddPieces(mjSpec* spec, const mjModel* alone, int geom, const Judge& judge,
 
 void SetContact(const mjModel* alone, int geom, mjsGeom* solid, std::vector<std::string>& warnings) {
   if (std::ranges::any_of(solid->surfacevel, [](double v) { return v != 0.0; }))
-    warnings.push_back(
-        fmt::format("geom '{}' does not move its surface here: surfacevel is left out", GeomName(alone, geom)));
+    warnings.push_back(fmt::format("geom '{}' has a surfacevel, which this simulation ignores", GeomName(alone, geom)));
   solid->margin = solid->gap = solid->adhesion = 0.0;
   std::ranges::fill(solid->surfacevel, 0.0);
   solid->priority = std::min(solid->priority, kCarPriority - 1);
@@ -176,12 +175,11 @@ void SetContact(const mjModel* alone, int geom, mjsGeom* solid, std::vector<std:
 
 std::string HullWarning(const std::string& name) {
   return fmt::format(
-      "mesh geom '{}' collides as its convex hull, hollows filled: it would take more than {} convex pieces; set its "
-      "contype and conaffinity to 0 and put boxes or convex meshes in its place",
+      "mesh geom '{}' collides as its convex hull, with its hollows filled, because it has more than {} convex pieces; "
+      "to avoid this, set its contype and conaffinity to 0 and add boxes or convex meshes that collide in its place",
       name, kPiecesMax);
 }
 
-// With the end of its line.
 std::string Refusal(const std::filesystem::path& room, const std::string& name) {
   const InputError error(room.string(), fmt::format("geom '{}' is seen but cannot be made solid", name),
                          fmt::format("a mesh of at most {} convex pieces, colliding geoms within {:g} cm of all its "
@@ -190,7 +188,7 @@ std::string Refusal(const std::filesystem::path& room, const std::string& name) 
   return error.what() + std::string("\n");
 }
 
-// Flexes (cloth, soft bodies) that collide meet the car, with its contact values, as geoms do.
+// Flexes (cloth, soft bodies) that collide touch the car with its contact values, like geoms.
 void MarkFlexes(mjSpec* spec) {
   for (mjsElement* e = mjs_firstElement(spec, mjOBJ_FLEX); e != nullptr; e = mjs_nextElement(spec, e)) {
     mjsFlex* flex = mjs_asFlex(e);

@@ -13,8 +13,8 @@ namespace merlin::sim {
 using SpecPtr = std::unique_ptr<mjSpec, void (*)(mjSpec*)>;
 using ModelPtr = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 
-// A room's <default> also reaches elements that are added with no default class given. This is the class of a spec of
-// its own, that is MuJoCo's built-in values; elements copy it when they are added.
+// MuJoCo's built-in default class, taken from an empty spec. Elements added to a room without a default class would get
+// the room's <default>; elements added with this one copy the built-in values.
 class BuiltinDefaults {
  public:
   const mjsDefault* get() const { return mjs_getSpecDefault(spec_.get()); }
@@ -23,10 +23,10 @@ class BuiltinDefaults {
   SpecPtr spec_{mj_makeSpec(), mj_deleteSpec};
 };
 
-// Throws InputError if the spec has an element of that kind and name.
+// Throws InputError if the spec already has an element of that kind and name.
 inline void SetName(mjsElement* element, const std::string& name) {
   if (mjs_setName(element, name.c_str()) != 0)
-    throw InputError("the room with the car in it", "a name is used twice", "names of the room's own",
+    throw InputError("the room with the car in it", "a name is used twice", "names that the car does not use",
                      "'" + name + "'");
 }
 

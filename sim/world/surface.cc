@@ -9,8 +9,8 @@
 namespace merlin::sim {
 namespace {
 
-// In a contact the geom of higher priority sets friction and stiffness alone; among equals the larger friction would count.
-// A floor of higher priority than the tyres, else like a tyre, changes the friction and nothing else.
+// Of two geoms in contact the one of higher priority sets friction and stiffness; at equal priority the larger friction
+// would count. So the floor gets a higher priority than the tyres, and the tyre's values except for the friction.
 void HoldTyres(mjModel* model, int floor, int tyre, double grip) {
   model->geom_priority[floor] = model->geom_priority[tyre] + 1;
   model->geom_condim[floor] = model->geom_condim[tyre];
@@ -31,7 +31,7 @@ void SetGrip(mjModel* model, const std::vector<bool>& is_floor, int tyre, const 
   for (int geom = 0; geom < model->ngeom; ++geom) {
     if (!is_floor[static_cast<std::size_t>(geom)]) continue;
     const double grip = surface.empty() ? own[static_cast<std::size_t>(geom)].grip : materials.Find(surface).grip;
-    if (grip != 1.0) HoldTyres(model, geom, tyre, grip);  // 1: the tyre's own, as it is without
+    if (grip != 1.0) HoldTyres(model, geom, tyre, grip);  // at 1 the tyre's own friction is right already
   }
 }
 

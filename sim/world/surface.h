@@ -1,4 +1,4 @@
-// How much grip the car's tyres have on each floor.
+// Friction between the car's tyres and each floor.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -10,9 +10,9 @@
 
 namespace merlin::sim {
 
-// Gives every floor (by geom) the friction tyres have on it: tyre friction times the grip of its material, or of the
-// surface named for all of them (empty: each its own). tyre: a geom of the car's tyres. Throws InputError for a surface
-// that is not among the materials, naming the nearest.
+// Sets the friction of every floor to the tyre's friction times the grip of the floor's material. surface: the name of
+// a material that replaces that of every floor; empty: each floor keeps its own. is_floor: indexed by geom id. tyre:
+// the geom id of one of the car's tyres. Throws InputError if no material has the name, and suggests the nearest.
 void SetGrip(mjModel* model, const std::vector<bool>& is_floor, int tyre, const Materials& materials,
              const std::string& surface);
 

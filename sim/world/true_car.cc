@@ -5,7 +5,7 @@
 namespace merlin::sim {
 namespace {
 
-// Of a link's frame against the base's, joints at 0.
+// Rotation from a link's frame to the base's with all joints at 0.
 Eigen::Matrix3d R_base_link(const CarDescription& car, const std::string& name) {
   const auto link = std::ranges::find(car.links, name, &CarLink::name);
   if (link == car.links.end() || link->parent.empty()) return Eigen::Matrix3d::Identity();

@@ -1,4 +1,4 @@
-// The car as it truly is: its description, with the differences that the scenario wants the stack not to know.
+// The car as simulated: the description that the stack uses, plus deviations that the stack does not know.
 #pragma once
 
 #include "robot/types/car.h"
@@ -6,9 +6,9 @@
 
 namespace merlin::sim {
 
-// The description with all wheels' collision radii scaled by wheel_radius_factor (their centres stay, so that the body
-// sits higher or lower) and the front axle moved so that the wheelbase is wheelbase_factor times the described one. What
-// is seen of the wheels stays: half a percent does not show.
+// Scales the collision radius of all wheels by wheel_radius_factor. The wheel centres stay where they are on the body,
+// so the body rides higher or lower. Moves the front axle so that the wheelbase is scaled by wheelbase_factor. The
+// visible wheels keep their size: half a percent cannot be seen.
 CarDescription TrueCar(CarDescription car, const DrivetrainConfig& config);
 
 }  // namespace merlin::sim

@@ -1,6 +1,6 @@
-// A turntable that holds the car's wheels off the floor and turns the car about a vertical axis (the origin of
-// CarDescription::T_base_turntable), so that a room can be mapped from one place. It dictates the car's motion, whatever the
-// forces. The turntable itself cannot be seen or touched.
+// A turntable that holds the car's wheels off the floor and turns the car about a vertical axis (through the origin of
+// CarDescription::T_base_turntable), so that a room can be mapped from one place. It sets the car's pose and velocity
+// directly; forces do not count. The turntable itself is invisible and nothing collides with it.
 #pragma once
 
 #include "robot/types/car.h"
@@ -14,13 +14,14 @@ constexpr double kTurntableHeight_m = 0.05;  // of the wheels above the floor
 class Turntable {
  public:
   Turntable() = default;
-  // T_world_base: of the car on the turntable at angle 0.
+  // T_world_base: pose of the car at turntable angle 0.
   Turntable(const CarDescription& car, const Pose& T_world_base, double rate_rad_s)
       : T_world_table_(T_world_base * car.T_base_turntable()),
         T_table_base_(car.T_base_turntable().inverse()),
         rate_rad_s_(rate_rad_s) {}
 
-  // Counter-clockwise seen from above, any number of turns; not finite: ignored. It turns there at its rate.
+  // Sets the target angle, counter-clockwise seen from above, any number of turns. The turntable moves there at its
+  // constant rate. A value that is not finite is ignored.
   void Send(double angle_rad);
   void Step(Duration duration);
 

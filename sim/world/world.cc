@@ -16,21 +16,21 @@ World::~World() = default;
 void World::Step() {
   drive_.Apply(model_.get(), data_.get(), Now());
   if (pan_) pan_->Apply(data_.get());
-  // mj_step in two halves, the first of the next step already taken: what depends on position and velocity stays
-  // current.
+  // mj_step1 of this step has already run at the end of the last one, so that everything in data that depends on
+  // position and velocity is current between steps.
   mj_step2(model_.get(), data_.get());
   if (turntable_) TurnOnTurntable();
   actors_.Move(data_.get(), Now(), T_world_base());
   mj_step1(model_.get(), data_.get());
-  actors_.Look(model_.get(), data_.get());
+  actors_.UpdateWaiting(model_.get(), data_.get());
   for (int i = 0; i < mjNWARNING; ++i)
     if (data_->warning[i].number > 0)
       throw std::runtime_error(
           fmt::format("MuJoCo stopped at {:.3f} s: {}", data_->time, mju_warningText(i, data_->warning[i].lastinfo)));
-  drive_.Follow(model_.get(), data_.get());  // only a sound state has counts
+  drive_.Follow(model_.get(), data_.get());  // after the check, because a bad state has no valid counts
 }
 
-// The turntable dictates the car's pose and velocity, whatever the forces.
+// Overwrites the car's pose and velocity with those of the turntable.
 void World::TurnOnTurntable() {
   turntable_->Step(kStep);
   const Pose T_world_base = turntable_->T_world_base();
@@ -43,7 +43,7 @@ void World::TurnOnTurntable() {
   Eigen::Vector3d::Map(position) = T_world_base.translation();
   Eigen::Vector4d::Map(position + 3) = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
   Eigen::Vector3d::Map(velocity) = turn.cross(-axle);
-  Eigen::Vector3d::Map(velocity + 3) = turn;  // in the body's axes; its z is the world's
+  Eigen::Vector3d::Map(velocity + 3) = turn;  // in body axes, where z equals the world's z
 }
 
 Time World::Now() const { return std::llround(data_->time / Seconds(kStep)) * kStep; }
@@ -83,8 +83,7 @@ BodyMotions World::Motions() const {
 }
 
 double World::Speed_m_s() const {
-  // A free joint's linear velocity is that of the body's origin in the world's axes, its angular velocity in the
-  // body's.
+  // A free joint's linear velocity is that of the body's origin in world axes; its angular velocity is in body axes.
   const mjtNum* v = data_->qvel + model_->jnt_dofadr[model_->body_jntadr[base_body_]];
   const Eigen::Vector3d forward_world = T_world_base().linear().col(0);
   return forward_world.dot(Eigen::Vector3d(v[0], v[1], v[2])) + v[4] * wheel_radius_m_;

@@ -1,15 +1,16 @@
-// The world: a room (MJCF), the car (CarDescription) and actors in one MuJoCo model, stepped every 2 ms.
+// The world: a room (MJCF), the car (CarDescription) and actors in one MuJoCo model, simulated in steps of 2 ms.
 //
-// One step, in its order:
-//   drive       the commands of the drive and the pan servo become voltages and set points
+// A step, in this order:
+//   drive       turns the commands for drive and pan servo into voltages and set points
 //   mj_step2    forces and motion: qpos and qvel of the new instant
 //   turntable   turns the car, where it is on one
-//   actors      go to where they are at the new instant
+//   actors      move to their poses at the new instant
 //   mj_step1    poses, distances and contacts of the new instant
 //   encoder     counts
 //
-// Frames: world (the room's; z up), base_link of the car (x forward, y left, z up, on the ground below the rear axle's
-// middle). world_setup.cc makes the model; what a room has to offer and what the car touches of it: room.h, solid.h.
+// Frames: world (that of the room; z up) and base_link of the car (x forward, y left, z up; origin on the ground below
+// the middle of the rear axle). world_setup.cc builds the model. room.h says what a room must have, solid.h what the
+// car can touch.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -37,18 +38,17 @@ namespace merlin::sim {
 struct WorldOptions {
   std::filesystem::path room;
   CarDescription car;
-  Pose T_world_start = Pose::Identity();  // of base_link; its height is taken from the floor there (within 0.5 m of z)
-  bool curtain_closed = false;  // geoms named "curtain*" hang where the room has them (true), or are not there (false)
-  DrivetrainConfig drivetrain{};  // how the true car and its drive differ from the description
-  Materials materials{};          // of the room: the grip of floors, what can be driven through
+  Pose T_world_start = Pose::Identity();  // of base_link; z is set to the height of the floor there (within 0.5 m)
+  bool curtain_closed = false;            // true: geoms named "curtain*" are kept; false: they are removed
+  DrivetrainConfig drivetrain{};          // how the true car and its drive differ from the description
+  Materials materials{};                  // of the room: the grip of floors, and what the car can drive through
   std::uint64_t seed = 1;
-  std::vector<ActorConfig> actors{};        // their models are files; materials are the caller's to know
-  std::vector<ObstacleConfig> obstacles{};  // the same
-  std::optional<double>
-      turntable_rate_rad_s{};  // the car is on a turntable that turns this fast, > 0; none: on the floor
+  std::vector<ActorConfig> actors{};  // models are paths of files; the caller checks that the materials exist
+  std::vector<ObstacleConfig> obstacles{};
+  std::optional<double> turntable_rate_rad_s{};  // the car is on a turntable of this rate, > 0; none: on the floor
 };
 
-// Two geoms that touch, the first of them the car's. A wheel on a geom named "floor*" is no contact.
+// A contact between a geom of the car and another geom. A wheel on a geom named "floor*" does not count as one.
 struct Touch {
   std::string car_geom;
   std::string other_geom;
@@ -56,13 +56,17 @@ struct Touch {
 
 class World {
  public:
-  // The car touches whatever of the room its cameras see (sim/world/solid.h), and nothing of the room changes the car. Throws
-  // InputError: a room that is missing or not MJCF (with its line where MuJoCo knows it), a missing mesh, a room
-  // without a geom named "floor*", a curtain to close where there is none, a car that starts off the floor, in contact
-  // with anything else or inside it, a drivetrain out of its ranges, a surface that is no material, a geom that cannot be made solid, an actor that is
-  // wrong by itself (sim/actors), whose path leaves the room, or that is there from the start and touches the car (one
-  // that comes later and finds the car in its place runs into it). Physics options (step, integrator, solver) are ours, whatever the room says.
-  // Errors of MuJoCo itself throw std::runtime_error from then on, in the whole process; it prints and logs nothing.
+  // The car can touch all parts of the room that its cameras see (sim/world/solid.h). Nothing in the room's file
+  // changes the car, and the physics options (step, integrator, solver) are ours. Throws InputError for
+  //  - a room that is missing, is not MJCF (with the line if MuJoCo names it), lacks a mesh or a geom named "floor*",
+  //    or has no curtain although one is to be closed;
+  //  - a geom that is seen but cannot be made solid;
+  //  - a car that does not start on the floor, or starts in contact with or inside something else;
+  //  - drivetrain values out of range, or a surface that is not a material;
+  //  - an actor with a fault of its own (sim/actors), with a path that leaves the room, or that is present at the start
+  //    and touches the car. An actor that appears later may appear inside the car, which then counts as a collision.
+  // After this call, and in the whole process, MuJoCo throws std::runtime_error on an error and prints and logs
+  // nothing.
   explicit World(const WorldOptions& options);
   ~World();
   World(const World&) = delete;
@@ -70,28 +74,27 @@ class World {
 
   static constexpr Duration kStep{2'000'000};
 
-  // One physics step. Throws std::runtime_error when MuJoCo warns (bad state): the simulation stops loudly.
-  // After it, positions, velocities and contacts in data() belong to the new state; accelerations, actuator and contact
-  // forces to the step that led there.
+  // One physics step. Throws std::runtime_error if MuJoCo warns (of a bad state, for example). Afterwards positions,
+  // velocities and contacts in data() belong to the new state; accelerations, actuator and contact forces belong to the
+  // step that led to it.
   void Step();
   Time Now() const;
   Pose T_world_base() const;
   BodyMotion BaseMotion() const;
-  // Of a camera whose pose in the car is this while the pan unit (if it moves) points ahead.
+  // Motion of a camera. T_base_camera: its pose in the car while the pan unit (if it moves) points ahead.
   BodyMotion CameraMotion(const Pose& T_base_camera) const;
-  // Of every body, actors included.
+  // Motion of every body, actors included.
   BodyMotions Motions() const;
-  double Speed_m_s() const;  // of the rear axle's middle along x, signed
+  double Speed_m_s() const;  // of the middle of the rear axle along x, signed
   std::vector<Touch> CarTouches() const;
-  // Whether a wheel touches a geom named "floor*", or on anything else that is not the car and less than 45 degrees
-  // steep where it touches.
+  // Whether a wheel touches a geom named "floor*", or any other geom (not of the car) where it slopes less than 45 deg.
   bool WheelTouchesGround() const;
   bool IsCarGeom(int geom_id) const;
 
-  // What moves, or appears in the car's way.
+  // Actors and obstacles.
   const Actors& actors() const { return actors_; }
-  // Smallest distance between the car and an actor or obstacle that is there; max_m where it is farther, negative where
-  // they overlap.
+  // Smallest distance between the car and an actor or obstacle that is present; max_m if it is farther away, negative
+  // if they overlap.
   double ActorDistance_m(std::size_t actor, double max_m) const {
     return actors_.CarDistance_m(model_.get(), data_.get(), actor, max_m);
   }
@@ -99,22 +102,22 @@ class World {
   DriveController& drive() { return drive_; }
   const DriveController& drive() const { return drive_; }
 
-  // Null: the car has no pan unit that moves; it is not on a turntable.
+  // Null if the car has no movable pan unit, or is not on a turntable.
   PanServo* pan() { return pan_ ? &*pan_ : nullptr; }
   const PanServo* pan() const { return pan_ ? &*pan_ : nullptr; }
   Turntable* turntable() { return turntable_ ? &*turntable_ : nullptr; }
 
-  // Where the room behaves differently from what its file says, a sentence each.
+  // Where the simulation departs from the room's file, one sentence each.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  // The outer outline of the room ("plan_xy_m"), empty if the room gives none; yaw of magnetic north.
+  // The outer outline of the room ("plan_xy_m"), empty if the room has none; and the yaw of magnetic north.
   const std::vector<Eigen::Vector2d>& plan_xy_m() const { return plan_xy_m_; }
   double north_yaw_rad() const { return north_yaw_rad_; }
 
   const mjModel* model() const { return model_.get(); }
   const mjData* data() const { return data_.get(); }
 
-  // time, qpos, qvel, act, and where actors are and how fast: what the state hash is made of.
+  // The input of the state hash: time, qpos, qvel, act, then pose and velocity of every actor.
   std::vector<double> State() const;
 
  private:

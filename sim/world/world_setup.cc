@@ -1,4 +1,4 @@
-// How a world is made: the room, the car and the actors into one model, and what it refuses.
+// Builds a world: joins the room, the car and the actors in one model and rejects bad input.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,17 +23,17 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kFarthest_m = 1e5;     // of any geom from the origin
-constexpr double kFloorSearch_m = 0.5;  // above and below the start's height
+constexpr double kFarthest_m = 1e5;     // limit for the position of any geom
+constexpr double kFloorSearch_m = 0.5;  // range above and below the start in which the floor is searched
 
-// The physics that the car was tuned with.
+// The physics options that the car was tuned with.
 void SetOptions(mjSpec* spec) {
   spec->option.timestep = Seconds(World::kStep);
   spec->option.integrator = mjINT_IMPLICITFAST;
   spec->option.cone = mjCONE_ELLIPTIC;
   spec->option.impratio = 10.0;
   spec->option.solver = mjSOL_NEWTON;
-  spec->option.disableflags |= mjDSBL_AUTORESET;  // else a bad number restarts the simulation silently
+  spec->option.disableflags |= mjDSBL_AUTORESET;  // otherwise a bad number would silently restart the simulation
 }
 
 void RefuseFaults(const DrivetrainConfig& config) {
@@ -46,7 +46,7 @@ void RefuseFaults(const DrivetrainConfig& config) {
   throw InputError(all);
 }
 
-// The error of a room that does not compile with the car in it: the car's, where the room does without.
+// The error for a room that does not compile with the car in it. If it compiles without the car, the car is at fault.
 InputError CompileError(const WorldOptions& options, const std::string& mujoco_message) {
   const SpecPtr room = ReadRoom(options.room, options.curtain_closed);
   SetOptions(room.get());
@@ -88,7 +88,7 @@ World::World(const WorldOptions& options) {
   actors_ = Actors(model_.get(), options.actors, options.obstacles, is_car_);
   actors_.Move(data_.get(), Now(), T_world_base());
   mj_forward(model_.get(), data_.get());
-  actors_.Look(model_.get(), data_.get());
+  actors_.UpdateWaiting(model_.get(), data_.get());
   RefuseGeomsNowhere(options.room.string());
   RefusePathsOutOfTheRoom(options.actors);
   RefuseStartInContact(options);
@@ -165,7 +165,7 @@ void World::RefuseGeomsNowhere(const std::string& room) const {
   for (int geom = 0; geom < model_->ngeom; ++geom)
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::abs(data_->geom_xpos[3 * geom + axis]) < kFarthest_m))
-        throw InputError(room, "geom '" + GeomName(model_.get(), geom) + "' stands nowhere",
+        throw InputError(room, "geom '" + GeomName(model_.get(), geom) + "' has an impossible position",
                          fmt::format("a position within {:g} m", kFarthest_m),
                          fmt::format("{:g}", data_->geom_xpos[3 * geom + axis]));
 }
@@ -199,17 +199,18 @@ void World::RefuseStartInContact(const WorldOptions& options) const {
     const int geom = mj_name2id(model_.get(), mjOBJ_GEOM, other.c_str());
     const std::string actor = geom < 0 ? "" : actors_.Describe(model_->geom_bodyid[geom]);
     if (!actor.empty())
-      throw InputError(actor, "it is there from the start and touches the car", "a free place, or a later time",
+      throw InputError(actor, "it is present at the start and touches the car", "a free place, or a later time",
                        "the car's " + part + fmt::format(" in it at x {:g} m, y {:g} m", start.x(), start.y()));
-    std::string notes;  // what may be the reason
+    std::string notes;  // possible reasons
     for (const std::string& warning : warnings_) notes += "; " + warning;
     if (geom >= 0 && model_->geom_type[geom] == mjGEOM_MESH)
-      notes += "; a closed mesh is solid within, a shell to drive in has an open side or faces that look inward";
+      notes +=
+          "; a closed mesh is solid inside: a hollow one to drive in needs an open side or faces that point inward";
     throw InputError(options.room.string(), fmt::format("the car cannot start at x {} m, y {} m", start.x(), start.y()),
                      "a free place", fmt::format("its {} in '{}'{}", part, other, notes));
   };
   if (const auto touches = CarTouches(); !touches.empty()) refuse(touches[0].car_geom, touches[0].other_geom);
-  // A part wholly inside a solid has no contact with its surface.
+  // A part that lies entirely inside a solid has no contact with its surface, so this is checked separately.
   for (int part = 0; part < model_->ngeom; ++part) {
     if (!is_car_[part] || model_->geom_contype[part] == 0) continue;
     for (int other = 0; other < model_->ngeom; ++other) {

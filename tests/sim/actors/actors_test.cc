@@ -244,7 +244,7 @@ TEST(Actors, RefuseAModelThatIsNone) {
             std::string::npos);
   EXPECT_NE(error_of("<mujoco>\n<worldbody>\n<geom type='ball'/></worldbody></mujoco>").find("it.xml:3"),
             std::string::npos);
-  EXPECT_NE(error_of("<mujoco/>").find("an actor of nothing"), std::string::npos);
+  EXPECT_NE(error_of("<mujoco/>").find("the actor has no geoms"), std::string::npos);
   EXPECT_NE(
       error_of("<mujoco><worldbody><geom type='plane' size='1 1 1'/></worldbody></mujoco>").find("cannot be part"),
       std::string::npos);
@@ -253,11 +253,11 @@ TEST(Actors, RefuseAModelThatIsNone) {
 }
 
 TEST(Actors, RefuseToStartInTheCarAndMayComeIntoItLater) {
-  EXPECT_NE(ErrorOf({Box({{0, 0.5, 0}})}).find("actor 'cart': it is there from the start and touches the car"),
+  EXPECT_NE(ErrorOf({Box({{0, 0.5, 0}})}).find("actor 'cart': it is present at the start and touches the car"),
             std::string::npos);
   ActorConfig huge = Box({{0, 0, 0}});
   huge.size_m = {5, 5, 5};  // the car wholly within
-  EXPECT_NE(ErrorOf({huge}).find("actor 'cart': it is there from the start"), std::string::npos);
+  EXPECT_NE(ErrorOf({huge}).find("actor 'cart': it is present at the start"), std::string::npos);
   const auto world = WorldWith({Box({{0.1, 0.6, 0}})});
   StepFor(*world, 0.1);
   EXPECT_FALSE(world->CarTouches().empty());
