@@ -8,11 +8,11 @@ namespace {
 
 struct Knot {
   double charge;
-  double share;  // of the nominal voltage, without load
+  double share;  // open-circuit voltage over nominal voltage
 };
 
-// A nickel-metal-hydride cell at room temperature over 1.2 V: steep when full and when empty, flat between; guess after
-// the shape that makers' discharge curves share.
+// Open-circuit voltage of a nickel-metal-hydride cell at room temperature: steep near full and near empty, flat
+// between. A guess that follows the usual shape of published discharge curves.
 constexpr std::array<Knot, 7> kCurve{
     {{0.0, 0.83}, {0.05, 0.96}, {0.1, 1.0}, {0.2, 1.03}, {0.5, 1.06}, {0.9, 1.1}, {1.0, 1.17}}};
 
@@ -40,7 +40,7 @@ double Battery::Terminal_v(const MotorLoad& motor) const {
   const double terminal_v =
       (OpenCircuit_v() - config_.resistance_ohm * Load_a() + share * motor.duty * motor.back_emf_v) /
       (1.0 + share * motor.duty * motor.duty);
-  return std::max(terminal_v, 0.0);  // one that cannot even feed the electronics
+  return std::max(terminal_v, 0.0);  // negative: the battery cannot even supply the electronics
 }
 
 void Battery::Feed(const MotorLoad& motor, double duration_s) {

@@ -1,14 +1,14 @@
-// The car's battery: its voltage under load, and how long it lasts.
+// The car's battery: its voltage under load, and its charge.
 #pragma once
 
 #include "robot/types/drivetrain_config.h"
 
 namespace merlin::sim {
 
-// A DC motor behind an H-bridge, averaged over the PWM: it sees duty times the terminal voltage, and what it draws loads
-// the battery with duty times its current: no power is lost or made in the bridge.
+// A DC motor behind a lossless H-bridge, averaged over the PWM period: the motor gets duty times the terminal voltage,
+// and the battery delivers duty times the motor's current.
 struct MotorLoad {
-  double duty = 0.0;  // [-1, 1]; 0: shorted, it brakes and draws nothing
+  double duty = 0.0;  // [-1, 1]; at 0 the motor is shorted: it brakes and draws nothing
   double back_emf_v = 0.0;
   double resistance_ohm = 1.0;  // of the winding, > 0
 
@@ -18,17 +18,17 @@ struct MotorLoad {
 class Battery {
  public:
   Battery() = default;
-  // nominal_v: of ten cells at 1.2 V, for the others in proportion.
+  // nominal_v: cell count times 1.2 V.
   Battery(const BatteryConfig& config, double nominal_v);
 
   double OpenCircuit_v() const;
-  // Under the motor and the electronics: both loads and the inner resistance solved together. A motor that brakes against
-  // the bridge (duty * current < 0) feeds back and raises it.
+  // The terminal voltage under both loads, motor and electronics, with the battery's internal resistance. A motor that
+  // brakes against the bridge (duty * current < 0) feeds current back and raises it.
   double Terminal_v(const MotorLoad& motor) const;
-  // The charge that this takes, or brings back, in a time.
+  // Draws the charge that motor and electronics use in this time; a braking motor charges the battery.
   void Feed(const MotorLoad& motor, double duration_s);
 
-  // Nothing is left: neither the motor nor the electronics get anything any more.
+  // No charge is left; motor and electronics get no more current.
   bool empty() const { return !config_.always_nominal && charge_as_ <= 0.0; }
   double charge() const { return charge_as_ / capacity_as_; }  // share of the capacity
 

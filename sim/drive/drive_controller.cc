@@ -15,13 +15,15 @@ namespace {
 // Speed loop: closed-loop bandwidth and integral action, guesses that settle in 0.1 s without overshoot.
 constexpr double kSpeedBandwidth_rad_s = 30.0;
 constexpr double kSpeedIntegral_rad_s = 5.0;
-// When a command has expired. The drive's contract asks for 2 m/s2 after at most 0.2 s; the rest is margin.
+// Deceleration after a command has expired. The contract in robot/hal/drive.h asks for 2 m/s2 after at most 0.2 s; the
+// rest is margin.
 constexpr double kBraking_m_s2 = 2.5;
-// A car that is to stand, counts nothing for so long and needs no more than this to stay is left to the shorted motor:
-// the rest of the integral would only push it to and fro by a count. On a slope it needs more, and is held.
+// If the target speed is 0, the encoder has not moved for kStill_s and the integral is below kHold_v, the motor is
+// shorted instead: the remaining integral would only move the car back and forth by one count. On a slope the integral
+// is larger and keeps holding the car.
 constexpr double kStill_s = 0.1, kHold_v = 0.3;
 
-// What the motor shaft sees of the car: its mass at the wheel's radius, the wheels and the rotor.
+// Inertia of the whole car at the motor shaft: its mass at the wheel radius, the wheels and the rotor.
 double ShaftInertia_kg_m2(const CarDescription& car) {
   double mass_kg = 0.0, wheels_kg_m2 = 0.0;
   for (const CarLink& link : car.links) mass_kg += link.mass_kg;
@@ -74,7 +76,7 @@ double DriveController::MeasuredSpeed_rad_s(const mjData* data, double period_s)
   return ShaftSpeed_rad_s(car_.drivetrain, counted, period_s);
 }
 
-// One turn of the speed loop: the bridge's duty until the next.
+// One cycle of the speed loop: sets the duty of the bridge until the next cycle.
 void DriveController::Regulate(const mjData* data, Time now, double period_s) {
   const Drivetrain& d = car_.drivetrain;
   const bool expired = now >= expires_;
@@ -82,12 +84,13 @@ void DriveController::Regulate(const mjData* data, Time now, double period_s) {
   const double before_m_s = speed_setpoint_m_s_;
   speed_setpoint_m_s_ = Toward(before_m_s, expired ? 0.0 : command_.speed_m_s, acceleration_m_s2 * period_s);
 
-  // From the rear axle's middle to the motor shaft, which turns with the mean of the four wheels.
+  // Convert the speed of the middle of the rear axle to that of the motor shaft, the mean of the four wheels.
   const double steering_rad = servo_.Report_rad(data->qpos[steering_qpos_]);
   const double shaft_rad_m = ShaftTurnPerMetre_rad_m(car_, steering_rad);
   const double target_rad_s = speed_setpoint_m_s_ * shaft_rad_m;
   const double error_rad_s = target_rad_s - MeasuredSpeed_rad_s(data, period_s);
-  // V = K w + R/K (torque): the speed's back-EMF, the set point's acceleration, and PI on the error.
+  // V = K w + (R / K) torque. Feed-forward: back-EMF at the target speed plus the acceleration of the set point.
+  // Feedback: PI on the error.
   const double volt_per_rad_s2 = d.resistance_ohm / d.motor_constant_v_s * shaft_inertia_kg_m2_;
   const double gain_v_s = volt_per_rad_s2 * kSpeedBandwidth_rad_s;
   const double feed_v = d.motor_constant_v_s * target_rad_s +
@@ -104,7 +107,7 @@ void DriveController::Regulate(const mjData* data, Time now, double period_s) {
 
 MotorLoad DriveController::LoadAt(const mjData* data) const {
   const Drivetrain& d = car_.drivetrain;
-  // On an empty battery the bridge rests with both its lower switches closed: the motor gets nothing, and brakes.
+  // With an empty battery the bridge rests with both lower switches closed, so the motor is shorted and brakes.
   return {.duty = battery_.empty() ? 0.0 : duty_,
           .back_emf_v = d.motor_constant_v_s * data->actuator_velocity[motor_output_],
           .resistance_ohm = d.resistance_ohm};
@@ -120,7 +123,7 @@ void DriveController::Apply(const mjModel* model, mjData* data, Time now) {
   terminal_v_ = battery_.Terminal_v(motor);
   battery_.Feed(motor, step_s);
   data->ctrl[motor_ctrl_] = motor.duty * terminal_v_;
-  // An expired command leaves the wheels where they are.
+  // After a command has expired, its steering angle is kept.
   data->ctrl[servo_ctrl_] = servo_.LinkageTarget_rad(command_.steering_rad, now);
 }
 

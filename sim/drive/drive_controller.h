@@ -1,5 +1,5 @@
-// The on-board electronics of the drive: battery, H-bridge, microcontroller with its speed loop, encoder and servo. They
-// turn a DriveCommand into a motor voltage and a steering set point, and report the drive's state.
+// The on-board electronics of the drive: battery, H-bridge, microcontroller with its speed loop, encoder and steering
+// servo. They turn a DriveCommand into a motor voltage and a steering set point, and report the drive's state.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -15,22 +15,22 @@
 
 namespace merlin::sim {
 
-// The speed loop (feed-forward and PI, limited in acceleration) runs at its own rate from encoder counts. It knows the
-// linkage and regulates the speed of the rear axle's middle, not the four wheels' mean. It believes the description: a car
-// of another wheel radius or wheelbase drives another speed.
+// The speed loop (feed-forward plus PI, with limited acceleration) runs at its own rate on encoder counts. It accounts
+// for the steering linkage, so it controls the speed of the middle of the rear axle, not the mean speed of the four
+// wheels. It uses the wheel radius and wheelbase of the description; where the true ones differ, the true speed
+// differs.
 class DriveController {
  public:
   DriveController() = default;
   DriveController(const mjModel* model, const CarDescription& car, const DrivetrainConfig& config, std::uint64_t seed);
 
-  // Clamped to the car's limits; not finite: expires at once. See robot/hal/drive.h.
+  // Clamps the command to the car's limits. One that is not finite expires at once. See robot/hal/drive.h.
   void Send(const DriveCommand& command, Time now);
   // Writes data->ctrl for the coming step.
   void Apply(const mjModel* model, mjData* data, Time now);
-  // Once after every step, of which data is the end: the encoder counts.
+  // Updates the encoder. Call once after every step.
   void Follow(const mjModel* model, const mjData* data);
-  // Encoder (whole counts of the motor shaft), steering, the motor's current, the battery's terminal voltage, all
-  // of this instant.
+  // The present state: encoder (whole counts of the motor shaft), steering, motor current and terminal voltage.
   DriveState Read(const mjModel* model, const mjData* data, Time now) const;
 
   const Battery& battery() const { return battery_; }
@@ -46,15 +46,15 @@ class DriveController {
   Encoder encoder_;
   SteeringServo servo_;
   DriveCommand command_;
-  Time expires_{0};  // nothing holds before the first command
+  Time expires_{0};  // no command is valid before the first one
   Time next_loop_{0};
   double shaft_inertia_kg_m2_ = 0.0;
   double speed_setpoint_m_s_ = 0.0;  // of the rear axle's middle, limited in acceleration
   double integral_v_ = 0.0;
-  std::int64_t loop_counts_ = 0;  // the encoder's at the last turn of the loop
-  double still_s_ = 0.0;          // how long it has counted nothing
+  std::int64_t loop_counts_ = 0;  // encoder counts at the last cycle of the speed loop
+  double still_s_ = 0.0;          // time since the last change of the counts
   double duty_ = 0.0;             // of the bridge
-  double terminal_v_ = 0.0;       // of the battery, during the coming or last step
+  double terminal_v_ = 0.0;       // of the battery, during the latest step
   int motor_ctrl_ = -1, motor_output_ = -1, servo_ctrl_ = -1, steering_qpos_ = -1;  // addresses in mjData
 };
 

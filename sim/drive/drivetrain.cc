@@ -15,7 +15,8 @@ constexpr char kTendon[] = "differential";
 constexpr char kServoJoint[] = "virtual_front_wheel_joint";
 constexpr char kVirtualWheel[] = "virtual_front_wheel";
 
-// Steering servo: a stiff position loop at the linkage. Guesses; with less rotor inertia the front wheels shimmy.
+// Steering servo: a stiff position loop at the linkage. The values are guesses; with less inertia the front wheels
+// shimmy.
 constexpr double kServoStiffness_n_m_rad = 20.0;
 constexpr double kServoDamping_n_m_s_rad = 0.4;
 constexpr double kServoInertia_kg_m2 = 2e-3;
@@ -24,7 +25,8 @@ void CheckSpec(const char* error) {
   if (error != nullptr && *error != '\0') throw std::logic_error(std::string("MuJoCo refuses an actuator: ") + error);
 }
 
-// The quartic through 0 that fits FrontWheelAngle_rad best over the steering range; MuJoCo's joint equality takes no other law.
+// The quartic through 0 that best fits FrontWheelAngle_rad over the steering range. MuJoCo's joint equality accepts
+// only a quartic.
 Eigen::Vector4d AckermannPolynomial(const CarDescription& car, Side side) {
   constexpr int kSamples = 101;
   Eigen::Matrix<double, kSamples, 4> powers;
@@ -48,7 +50,7 @@ void AddLinkage(mjSpec* spec, const CarDescription& car, const mjsDefault* plain
 
 void AddMotor(mjSpec* spec, const CarDescription& car, const mjsDefault* plain) {
   const Drivetrain& d = car.drivetrain;
-  // Ideal differentials: the motor turns with the mean of the four wheels and shares its torque equally.
+  // Ideal differentials: the motor turns at the mean speed of the four wheels and drives each with the same torque.
   mjsTendon* tendon = mjs_addTendon(spec, plain);
   SetName(tendon->element, kTendon);
   for (const CarWheel& wheel : car.wheels) mjs_wrapJoint(tendon, car.links[wheel.link].joint_name.c_str(), 0.25);
@@ -64,8 +66,8 @@ void AddMotor(mjSpec* spec, const CarDescription& car, const mjsDefault* plain) 
   motor->ctrlrange[0] = -d.voltage_max_v, motor->ctrlrange[1] = d.voltage_max_v;
 }
 
-// The virtual wheel midway between the front ones, which the servo turns and whose angle the linkage follows: a body
-// that nobody sees or feels. MuJoCo wants some mass of it; its inertia is the servo's.
+// Adds the virtual wheel midway between the front wheels. The servo turns it and the linkage follows its angle. It has
+// no shape, and only the minimum mass that MuJoCo requires; its joint carries the servo's inertia.
 void AddVirtualWheel(mjSpec* spec, const CarDescription& car, const mjsDefault* plain) {
   mjsBody* body = mjs_addBody(mjs_findBody(spec, car.links[0].name.c_str()), plain);
   SetName(body->element, kVirtualWheel);
@@ -78,7 +80,7 @@ void AddVirtualWheel(mjSpec* spec, const CarDescription& car, const mjsDefault* 
   SetName(joint->element, kServoJoint);
   joint->type = mjJNT_HINGE;
   joint->axis[0] = 0.0, joint->axis[1] = 0.0, joint->axis[2] = 1.0;
-  const double unit = spec->compiler.degree ? 180.0 / std::numbers::pi : 1.0;  // the room's choice rules the whole spec
+  const double unit = spec->compiler.degree ? 180.0 / std::numbers::pi : 1.0;  // set by the room for the whole spec
   joint->limited = mjLIMITED_TRUE;
   joint->range[0] = -car.steering_max_rad * unit, joint->range[1] = car.steering_max_rad * unit;
   joint->armature = kServoInertia_kg_m2;

@@ -1,5 +1,5 @@
-// The car's motor and steering in MuJoCo: MuJoCo's dcmotor on a differential tendon, and a steering servo with
-// slew. sim/drive/drive_controller.h gives them their set points.
+// The car's motor and steering in MuJoCo: a dcmotor actuator on a tendon that models the differentials, and a steering
+// servo with a limited slew rate. Their set points come from sim/drive/drive_controller.h.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -8,13 +8,13 @@
 
 namespace merlin::sim::drivetrain {
 
-// The actuators' names. The servo's transmission is the joint of the virtual middle front wheel.
+// Names of the actuators. The servo acts on the joint of the virtual front wheel of the bicycle model.
 inline constexpr char kMotor[] = "motor";
 inline constexpr char kServo[] = "steering_servo";
 
-// Adds tendon, motor, steering servo and Ackermann equalities to a spec that holds the car's joints (see
-// sim/world/car_body.h). The motor turns with the mean of the four wheels: so does the encoder, which in a turn counts more
-// than the path of the rear axle's middle (0.8 % at 10 deg of steering, 5.3 % at 25 deg).
+// Adds tendon, motor, steering servo and Ackermann equalities to a spec that already has the car's joints (see
+// sim/world/car_body.h). Motor and encoder turn at the mean speed of the four wheels. In a curve the encoder therefore
+// counts more than the path of the middle of the rear axle (0.8 % at 10 deg of steering, 5.3 % at 25 deg).
 void AddTo(mjSpec* spec, const CarDescription& car);
 
 }  // namespace merlin::sim::drivetrain

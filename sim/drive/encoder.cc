@@ -9,8 +9,9 @@
 namespace merlin::sim {
 namespace {
 
-// Bearings and grease hold the rotor where it is in the play against less than this (half an ampere); guess. Without it
-// the speed loop's ripple would rattle it to and fro, which a car's rolling resistance prevents.
+// Friction of bearings and grease, which holds the rotor inside the backlash against smaller torques (this one takes
+// half an ampere). A guess. Without it the ripple of the speed loop would rattle the rotor back and forth, which the
+// rolling resistance of a real car prevents.
 constexpr double kFriction_n_m = 0.015;
 
 }  // namespace
@@ -30,7 +31,7 @@ void Encoder::Follow(double wheels_rad, double torque_n_m, double step_s) {
   ++step_;
 }
 
-// The rotor is free between the flanks and stops dead at them.
+// The rotor moves freely between the tooth flanks and stops at them without rebound.
 void Encoder::MoveInPlay(double torque_n_m, double step_s) {
   const double play_rad = 0.5 * config_.gear_backlash_rad;
   const double free_n_m = std::copysign(std::max(std::abs(torque_n_m) - kFriction_n_m, 0.0), torque_n_m);
@@ -41,7 +42,7 @@ void Encoder::MoveInPlay(double torque_n_m, double step_s) {
   if (ahead_rad_ != ahead_rad) ahead_rad_s_ = 0.0;
 }
 
-// Of the edges that passed in this step, how many the counter did not see.
+// How many of the edges that passed in this step the counter missed.
 std::int64_t Encoder::Missed(std::int64_t passed) {
   if (config_.missed_counts <= 0.0 || passed == 0) return 0;
   Random random(seed_, Sensor::kDrive, step_);
