@@ -42,9 +42,10 @@ std::shared_ptr<ColorShot> ColorCamera::Take(const mjModel* model, const mjData*
                                              const BodyMotions& bodies) const {
   auto shot = std::make_shared<ColorShot>(model);
   shot->camera = camera;
-  const double away_s = motion_blur_ ? 0.5 * sheet_.exposure_max_s : 0.0;
-  const Sway sway{away_s * camera.velocity_m_s.norm(), away_s * camera.angular_velocity_rad_s.norm()};
-  shot->scene.Take(model, data, camera.T_world_body, lens_.pinhole(), sway, away_s, bodies);
+  const double half_exposure_s = motion_blur_ ? 0.5 * sheet_.exposure_max_s : 0.0;
+  const MotionBound bound{half_exposure_s * camera.velocity_m_s.norm(),
+                          half_exposure_s * camera.angular_velocity_rad_s.norm()};
+  shot->scene.Take(model, data, camera.T_world_body, lens_.pinhole(), bound, half_exposure_s, bodies);
   if (motion_blur_) shot->moving = shot->scene.MovingGeoms(model, bodies);
   return shot;
 }
@@ -54,7 +55,7 @@ void ColorCamera::Draw(ColorShot& shot, double exposure_s) {
   Exposure exposure(pinhole_bgr_.size());
   for (int i = 0; i < kBlurPictures; ++i) {
     const double dt_s = ((i + 0.5) / kBlurPictures - 0.5) * exposure_s;
-    shot.scene.Look(shot.camera.At(dt_s), lens_.pinhole());
+    shot.scene.SetCamera(shot.camera.At(dt_s), lens_.pinhole());
     shot.scene.Move(shot.moving, dt_s);
     renderer_.Draw(shot.scene, pinhole_bgr_);
     exposure.Add(pinhole_bgr_);

@@ -1,6 +1,6 @@
-// The colour camera. A frame takes three steps: MuJoCo draws what a pinhole would see (renderer), the picture is distorted
-// as the lens does (lens), and the sensor adds noise and converts to 8 bit (color_response). Exposure time and gain are
-// fixed or automatic.
+// The simulated colour camera. A frame takes three steps: MuJoCo draws the picture of a pinhole camera (renderer), the
+// picture is distorted (lens), and the sensor adds noise and converts to 8 bits (color_response). Exposure time and
+// gain are fixed or automatic.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace merlin::sim {
 
-// What a picture is made of, taken at the middle of its exposure.
+// The data for one picture, taken at the middle of its exposure.
 struct ColorShot {
   explicit ColorShot(const mjModel* model) : scene(model) {}
   RenderSnapshot scene;
@@ -25,16 +25,17 @@ struct ColorShot {
 
 class ColorCamera {
  public:
-  // Throws MachineError where there is no GL. The sheet's lens is invertible. motion_blur: the picture is the mean over
-  // the exposure, of what a moving camera sees of bodies that move (eight pictures, each at the cost of one).
+  // Throws MachineError if there is no GL. The lens of the data sheet must be invertible. motion_blur: the picture is
+  // the mean of eight over the exposure, in which camera and bodies move; it takes eight times as long.
   ColorCamera(const mjModel* model, const ColorCameraSheet& sheet, Gl gl, std::uint64_t seed, bool motion_blur);
 
-  // Reads the world; safe beside Expose. bodies: how they move, for motion blur; empty: they do not.
+  // Takes a snapshot of the world. May run in parallel with Expose. bodies: their motions, for motion blur; empty if
+  // all are at rest.
   std::shared_ptr<ColorShot> Take(const mjModel* model, const mjData* data, const BodyMotion& camera,
                                   const BodyMotions& bodies = {}) const;
 
-  // In order of frames, because the automatic exposure goes by the frame before. settings: valid for the sheet; others
-  // than before start the automatic exposure anew. Any thread, one at a time.
+  // Draws a frame. Call in the order of frames, because automatic exposure depends on the frame before. settings: valid
+  // for the data sheet; a change restarts the automatic exposure. May be called from any thread, one at a time.
   ColorFrame Expose(ColorShot& shot, const ColorSettings& settings, Time stamp, std::uint64_t index);
 
   const std::string& gl_name() const { return renderer_.name(); }

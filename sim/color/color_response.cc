@@ -14,13 +14,13 @@
 namespace merlin::sim {
 namespace {
 
-constexpr int kSteps = 4096;  // of the converter, 12 bit
+constexpr int kSteps = 4096;  // of the 12-bit converter
 
 // 2^12 equally likely values of the standard normal distribution (reaching +-3.7 sigma), scaled to variance 1.
 constexpr int kQuantileBits = 12;
 constexpr int kQuantiles = 1 << kQuantileBits;
 
-// x with Phi(x) = p, p in [0.5, 1): Newton from the left, where Phi is concave and every step falls short.
+// x with Phi(x) = p for p in [0.5, 1). Newton's method from x = 0: Phi is concave there, so no step overshoots.
 double NormalQuantile(double p) {
   double x = 0.0;
   for (int i = 0; i < 40; ++i) {
@@ -46,7 +46,7 @@ std::array<float, kQuantiles> NormalTable() {
   return table;
 }
 
-// table[index], eight at a time where the processor can.
+// out[i] = table[index[i]], eight at a time with AVX2.
 template <std::size_t kCount>
 void LookUp(const float* table, const std::array<int, kCount>& index, float* out) {
 #ifdef __AVX2__
@@ -65,7 +65,7 @@ std::array<std::uint8_t, kSteps> CodeTable() {
   return table;
 }
 
-// Of every value, and a chunk of nothing behind.
+// Vignetting factor for every value of a picture, followed by padding zeros.
 std::vector<float> Falloff(const CameraModel& camera, double power, std::size_t padding) {
   std::vector<float> falloff;
   falloff.reserve(3 * static_cast<std::size_t>(camera.width) * camera.height + padding);
@@ -90,11 +90,11 @@ double SrgbOfLinear(double light) {
 ColorResponse::ColorResponse(const ColorCameraSheet& sheet, std::uint64_t seed)
     : sheet_(sheet), seed_(seed), falloff_(Falloff(sheet.camera, sheet.falloff_power, kChunk)) {}
 
-// What a picture's settings make of its values.
+// Factors and tables that depend on the settings of a picture.
 struct ColorResponse::Scale {
-  std::array<float, 256> light_wells{};        // by rendered value: electrons in full wells, on the axis
-  std::array<float, kChunk> steps_per_well{};  // of channels b, g, r, b, ...
-  float shot_variance_wells = 0.0f;            // of one full well of light
+  std::array<float, 256> light_wells{};        // for each rendered value: electrons on the axis, in full wells
+  std::array<float, kChunk> steps_per_well{};  // for channels b, g, r, b, ...
+  float shot_variance_wells = 0.0f;            // for one full well of light
   float read_variance_wells = 0.0f;
 };
 
@@ -133,7 +133,7 @@ void ColorResponse::Expose(std::span<std::uint8_t> bgr, const ColorSettings& set
   static const std::array<float, kQuantiles> normal = NormalTable();
   const Scale scale = ScaleOf(settings);
   const std::array<std::uint32_t, 2> key{static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)};
-  // The counter of robot/base/random.h; eight blocks serve 64 neighbouring values, 16 bits each.
+  // Counter as in robot/base/random.h; eight blocks give 16 bits each to 64 neighbouring values.
   const std::uint32_t purpose = static_cast<std::uint32_t>(Sensor::kColor) << 8 | (frame >> 32 & 0xFF);
   for (std::size_t first = 0; first < bgr.size(); first += kChunk) {
     alignas(32) std::array<float, kChunk> deviate;
@@ -162,7 +162,7 @@ void ColorResponse::Expose(std::span<std::uint8_t> bgr, const ColorSettings& set
 ColorSettings NextExposure(const ColorCameraSheet& sheet, const ColorSettings& settings,
                            std::span<const std::uint8_t> bgr) {
   constexpr double kGreyCard = 0.18;
-  constexpr std::size_t kEvery = 31;  // values; a few per cent of them give the mean as well
+  constexpr std::size_t kEvery = 31;  // every 31st value is enough for the mean
   std::array<double, 256> light{};
   for (int value = 0; value < 256; ++value) light[value] = LinearOfSrgb(value);
   std::array<std::uint32_t, 256> histogram{};

@@ -1,5 +1,5 @@
-// How a colour sensor turns light into a picture: electrons, noise, gain, 8 bit. Model: EMVA Standard 1288, release 3.1
-// (linear pixel, shot noise, one read noise), with natural vignetting before it.
+// Model of a colour sensor, from light to an 8-bit picture: electrons, noise, gain, coding. It follows EMVA Standard
+// 1288, release 3.1 (linear pixel, shot noise, one read noise), and adds natural vignetting of the lens.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace merlin::sim {
 
-// A rendered 8-bit value is taken as sRGB (IEC 61966-2-1): this is its linear light, white 1. A camera encodes its own
-// pictures as sRGB too, so that a nominally exposed one looks as rendered.
+// Conversion between 8-bit sRGB values (IEC 61966-2-1) and linear light, where white is 1. Rendered pictures are taken
+// as sRGB, and the camera encodes its pictures as sRGB, so that a picture of nominal exposure looks as rendered.
 double LinearOfSrgb(double value);  // value 0 to 255
 double SrgbOfLinear(double light);  // light 0 to 1, not rounded
 
@@ -20,13 +20,14 @@ class ColorResponse {
  public:
   ColorResponse(const ColorCameraSheet& sheet, std::uint64_t seed);
 
-  // In place, from a rendered picture as the lens forms it to what the camera delivers. Electrons of a pixel: full well
-  // times linear light times exposure over nominal exposure times cos^falloff_power; shot noise of as many electrons
-  // (Gaussian) and read noise; clipped at the full well; times gain and white balance; 4096 steps, clipped, coded in 8 bit.
+  // Turns, in place, the picture on the sensor into the one that the camera delivers:
+  //   electrons = full well * linear light * exposure / nominal exposure * cos^falloff_power
+  //   plus Gaussian shot noise and read noise, clipped at the full well,
+  //   times gain and white balance, quantised to 4096 steps, clipped, and encoded in 8 bits.
   void Expose(std::span<std::uint8_t> bgr, const ColorSettings& settings, std::uint64_t frame) const;
 
  private:
-  static constexpr int kChunk = 384;  // values dealt with at once: whole pixels, whole eights of random blocks
+  static constexpr int kChunk = 384;  // values processed at once: a multiple of 3 (pixels) and of 64 (random numbers)
   struct Scale;
   Scale ScaleOf(const ColorSettings& settings) const;
   // first: index of the first value in the picture; deviate: normally distributed, by value.
@@ -35,12 +36,12 @@ class ColorResponse {
 
   ColorCameraSheet sheet_;
   std::uint64_t seed_;
-  std::vector<float> falloff_;  // by value of a picture, and a chunk of zeros
+  std::vector<float> falloff_;  // for each value of a picture, padded with a chunk of zeros
 };
 
-// The automatic exposure: from the settings a picture was taken with and the picture, those of the next one. The mean
-// linear light moves half the distance (in stops) to 0.18, a grey card, unless it is within a quarter stop; exposure time
-// first, then gain.
+// Automatic exposure: the settings for the next picture, given the last one and its settings. They move the mean linear
+// light half the distance, in stops, towards 0.18 (a grey card), and do not change within a quarter stop of it. The
+// exposure time is changed first, then the gain.
 ColorSettings NextExposure(const ColorCameraSheet& sheet, const ColorSettings& settings,
                            std::span<const std::uint8_t> bgr);
 

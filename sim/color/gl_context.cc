@@ -13,7 +13,7 @@
 namespace merlin::sim {
 namespace {
 
-// Of the EGL 1.5 registry and OSMesa's header, the few numbers used here.
+// Constants from the EGL 1.5 registry and OSMesa's header.
 constexpr unsigned kEglPlatformSurfaceless = 0x31DD, kEglOpenGlApi = 0x30A2;
 constexpr std::int32_t kEglSurfaceType = 0x3033, kEglRenderableType = 0x3040, kEglOpenGlBit = 0x0008, kEglNone = 0x3038;
 constexpr unsigned kOsmesaRgba = 0x1908, kOsmesaUnsignedByte = 0x1401, kGlRenderer = 0x1F01;
@@ -21,15 +21,17 @@ constexpr unsigned kOsmesaRgba = 0x1908, kOsmesaUnsignedByte = 0x1401, kGlRender
 using EglHandle = void*;
 using GetString = const unsigned char* (*)(unsigned);
 
-// Mesa's software rasteriser reads these when a library is opened. The vector width moves the last bits of a picture,
-// and 512 bits have crashed; the number of threads moves none, but 0 (draw in the caller's thread) leaves the other
-// cores to the physics and the rays. Overwritten, whatever the user's environment says: the same picture everywhere.
+// Mesa's software rasteriser reads these variables when its library is opened. The vector width affects the last bits
+// of a picture, and a width of 512 bits has crashed. The number of threads does not affect the picture; 0 (draw in the
+// calling thread) leaves the other cores to physics and rays. The user's own values are overwritten, so that all
+// environments draw the same picture.
 void PinRasteriser() {
   setenv("LP_NATIVE_VECTOR_WIDTH", "256", 1);
   setenv("LP_NUM_THREADS", "0", 1);
 }
 
-// Never closed again: MuJoCo keeps pointers into it. Global, because MuJoCo looks for GL among the global symbols.
+// A shared library that is never closed, because MuJoCo keeps pointers into it. Its symbols are global, because MuJoCo
+// looks up GL functions among the global symbols.
 class Library {
  public:
   explicit Library(const char* file) : file_(file), handle_(dlopen(file, RTLD_NOW | RTLD_GLOBAL)) {
@@ -56,7 +58,7 @@ std::string RendererName(GetString get_string) {
   return text ? reinterpret_cast<const char*>(text) : "unknown renderer";
 }
 
-// MuJoCo binds its GL functions once a process. Claims the back end for it; false: the other one has it.
+// MuJoCo binds its GL functions once per process. Claims the process for this back end; false if the other one has it.
 bool Claim(Gl gl) {
   static std::mutex mutex;
   static Gl claimed = Gl::kOff;
@@ -93,7 +95,7 @@ void GlContext::OpenEgl() {
   Require(context != nullptr, "eglCreateContext (OpenGL)");
 
   get_ = get_proc;
-  // The API is bound per thread. The display is never terminated: every context of the process shares it.
+  // The API is bound per thread. The display is never terminated, because all contexts of the process share it.
   make_current_ = [=] {
     Require(bind_api(kEglOpenGlApi) && make_current(display, nullptr, nullptr, context), "eglMakeCurrent");
   };
@@ -113,7 +115,7 @@ void GlContext::OpenOsmesa() {
   void* context = create(kOsmesaRgba, 24, 8, 0, nullptr);
   Require(context != nullptr, "OSMesaCreateContextExt");
   get_ = get_proc;
-  // OSMesa wants a colour buffer; the picture goes to MuJoCo's own, so one pixel is enough.
+  // OSMesa needs a colour buffer. MuJoCo draws into a buffer of its own, so one pixel is enough.
   const auto pixel = std::make_shared<std::array<std::uint8_t, 4>>();
   make_current_ = [=] {
     Require(make_current(context, pixel->data(), kOsmesaUnsignedByte, 1, 1), "OSMesaMakeCurrent");

@@ -1,5 +1,6 @@
-// An OpenGL context without a window, from libraries opened at run time: a machine without them still runs the rest.
-// EGL on Mesa's surfaceless platform (EGL_MESA_platform_surfaceless, EGL_KHR_surfaceless_context) or OSMesa.
+// An OpenGL context without a window: EGL on Mesa's surfaceless platform (EGL_MESA_platform_surfaceless,
+// EGL_KHR_surfaceless_context) or OSMesa. The libraries are opened at run time, so a machine without them still runs
+// everything else.
 #pragma once
 
 #include <functional>
@@ -19,11 +20,11 @@ class GlContext {
 
   // "EGL: llvmpipe (LLVM 15.0.6, 256 bits)"
   const std::string& name() const { return name_; }
-  // A function of GL by its name; null: it has none such.
+  // Address of a GL function; null if there is no such function.
   void* Get(const char* function) const { return get_(function); }
 
-  // Holds the context current in the calling thread, for as long as it lives: a context is current in one thread at a
-  // time, and the next to draw may be another thread.
+  // Makes the context current in the calling thread for the lifetime of this object. A context is current in only one
+  // thread at a time, and another thread may draw next.
   class Current {
    public:
     explicit Current(const GlContext& context) : context_(context) { context_.make_current_(); }

@@ -13,7 +13,8 @@
 namespace merlin::sim {
 namespace {
 
-// Where the pinhole with the camera's focal lengths and principal point sees what each pixel sees.
+// For each pixel of the camera the position, along the same ray, in a pinhole picture with the same focal lengths and
+// principal point.
 std::vector<Eigen::Vector2d> UndistortedPixels(const CameraModel& camera) {
   std::vector<Eigen::Vector2d> pixels;
   pixels.reserve(static_cast<std::size_t>(camera.width) * camera.height);
@@ -26,7 +27,7 @@ std::vector<Eigen::Vector2d> UndistortedPixels(const CameraModel& camera) {
   return pixels;
 }
 
-// Of four neighbouring BGR pixels one, by shares of the right and the lower ones, rounded.
+// Bilinear mean of four neighbouring BGR pixels, rounded. right_256, down_256: weights of the right and lower ones.
 void Blend(const std::uint8_t* upper, const std::uint8_t* lower, int right_256, int down_256, std::uint8_t* out) {
   for (int c = 0; c < 3; ++c) {
     const int above = 256 * upper[c] + right_256 * (upper[c + 3] - upper[c]);
@@ -35,7 +36,7 @@ void Blend(const std::uint8_t* upper, const std::uint8_t* lower, int right_256, 
   }
 }
 
-// The same; reads eight bytes of each row, writes four.
+// The same with SIMD instructions. Reads eight bytes of each row and writes four.
 void BlendAtOnce(const std::uint8_t* upper, const std::uint8_t* lower, int right_256, int down_256, std::uint8_t* out) {
 #ifdef __SSE4_1__
   // b b' g g' r r' as 16-bit numbers: left and right pixel side by side, for one multiply and add.
@@ -70,7 +71,7 @@ Lens::Lens(const CameraModel& camera) : pinhole_(camera) {
               .cx_px = camera.cx_px - first.x(),
               .cy_px = camera.cy_px - first.y()};
   for (const Eigen::Vector2d& pixel : pixels) {
-    // Whole pixels and shares at once; a place that rounds up to the last column keeps a right neighbour.
+    // Pixel index and weight in one number. The index stays below the last column, so that there is a right neighbour.
     const auto u_256 = static_cast<std::uint32_t>(std::lround(256.0 * (pixel.x() - first.x())));
     const auto v_256 = static_cast<std::uint32_t>(std::lround(256.0 * (pixel.y() - first.y())));
     const std::uint32_t u = std::min<std::uint32_t>(u_256 / 256, pinhole_.width - 2);

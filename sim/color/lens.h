@@ -1,4 +1,4 @@
-// A distorting lens. The renderer knows pinholes only, so a larger pinhole picture is drawn and then resampled once.
+// Lens distortion. The renderer draws pinhole pictures only, so a larger one is drawn and resampled once.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,13 @@ class Lens {
   // camera: invertible (CameraModel::IsInvertible).
   explicit Lens(const CameraModel& camera);
 
-  // The camera without distortion, of the same focal lengths, whose picture holds the direction of every pixel.
-  // Without distortion it is the camera itself.
+  // The pinhole camera to draw with: the same focal lengths, and a picture large enough for the rays of all pixels. It
+  // is the camera itself if that has no distortion.
   const CameraModel& pinhole() const { return pinhole_; }
 
-  // From the pinhole's picture to the camera's: each pixel takes what lies along its own ray, bilinear between the
-  // pinhole's pixels, its place rounded to 1/256 pixel. Both BGR, row-major. In integers: the same bits everywhere.
+  // Resamples the pinhole picture to the camera's, both BGR and row-major. Each pixel takes the colour along its own
+  // ray, interpolated bilinearly at a position rounded to 1/256 pixel. Integer arithmetic gives the same bits
+  // everywhere.
   void Remap(std::span<const std::uint8_t> pinhole_bgr, std::span<std::uint8_t> bgr) const;
 
  private:

@@ -15,11 +15,11 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kNear_m = 0.05;  // the camera's own housing ends nearer, what it could photograph begins farther
+constexpr double kNear_m = 0.05;  // beyond the camera's own housing, and nearer than anything it is to see
 constexpr double kFar_m = 100.0;
 
-// The picture's edges as slopes in the optical frame. A pixel's centre has whole coordinates, so the picture reaches
-// from -0.5 to width - 0.5.
+// The edges of the picture as slopes in the optical frame. Pixel centres have integer coordinates, so the picture
+// extends from -0.5 to width - 0.5.
 struct Slopes {
   double left, right, up, down;  // x / z and y / z
 };
@@ -47,7 +47,7 @@ mjvGLCamera GlCamera(const Pose& T_world_camera, const CameraModel& camera) {
   return gl;
 }
 
-// Geoms of groups 0-2 and nothing else: no sites, joints, tendons, contacts, labels.
+// Draws only geoms of groups 0-2: no sites, joints, tendons, contacts or labels.
 mjvOption OnlyGeoms() {
   mjvOption option;
   mjv_defaultOption(&option);
@@ -56,9 +56,10 @@ mjvOption OnlyGeoms() {
   return option;
 }
 
-// Leaves out what cannot be in the picture: a corridor has hundreds of geoms and a camera sees a few dozen.
-void DropUnseen(const mjModel* model, const Pose& T_world_camera, const CameraModel& camera, const Sway& sway,
-                double away_s, const BodyMotions& bodies, mjvScene& scene) {
+// View-frustum culling: removes geoms that cannot be in the picture at any time during the exposure. A corridor has
+// hundreds of geoms, of which a camera sees a few dozen.
+void DropUnseen(const mjModel* model, const Pose& T_world_camera, const CameraModel& camera, const MotionBound& bound,
+                double half_exposure_s, const BodyMotions& bodies, mjvScene& scene) {
   const Slopes edges = EdgesOf(camera);
   const std::array<Eigen::Vector3d, 5> inward{
       Eigen::Vector3d(1, 0, -edges.left).normalized(), Eigen::Vector3d(-1, 0, edges.right).normalized(),
@@ -70,19 +71,20 @@ void DropUnseen(const mjModel* model, const Pose& T_world_camera, const CameraMo
     const double radius_m = model->geom_rbound[geom.objid];
     if (radius_m <= 0.0) return false;  // a plane
     const Eigen::Vector3d centre = T_camera_world * Eigen::Vector3d(geom.pos[0], geom.pos[1], geom.pos[2]);
-    double sway_m = sway.shift_m + sway.turn_rad * (centre.norm() + radius_m);
+    double moved_m = bound.shift_m + bound.turn_rad * (centre.norm() + radius_m);
     if (!bodies.empty()) {
       const BodyMotion& body = bodies[static_cast<std::size_t>(model->geom_bodyid[geom.objid])];
       const Eigen::Vector3d arm = T_world_camera * centre - body.T_world_body.translation();
-      sway_m += away_s * (body.velocity_m_s.norm() + body.angular_velocity_rad_s.norm() * (arm.norm() + radius_m));
+      moved_m +=
+          half_exposure_s * (body.velocity_m_s.norm() + body.angular_velocity_rad_s.norm() * (arm.norm() + radius_m));
     }
     return std::any_of(inward.begin(), inward.end(),
-                       [&](const Eigen::Vector3d& n) { return n.dot(centre) < -radius_m - sway_m - 1e-3; });
+                       [&](const Eigen::Vector3d& n) { return n.dot(centre) < -radius_m - moved_m - 1e-3; });
   };
   scene.ngeom = static_cast<int>(std::remove_if(scene.geoms, scene.geoms + scene.ngeom, unseen) - scene.geoms);
 }
 
-// What is near and small first, walls and planes last: a pixel hidden already costs the rasteriser next to nothing.
+// Sorts near and small geoms first, walls and planes last: the rasteriser then skips most hidden pixels early.
 void NearAndSmallFirst(const mjModel* model, const Eigen::Vector3d& eye_world, mjvScene& scene) {
   const auto reach_m = [&](const mjvGeom& geom) {
     const double radius_m = geom.objtype == mjOBJ_GEOM && geom.objid >= 0 ? model->geom_rbound[geom.objid] : 0.0;
@@ -104,15 +106,16 @@ RenderSnapshot::RenderSnapshot(const mjModel* model) {
 RenderSnapshot::~RenderSnapshot() { mjv_freeScene(&scene); }
 
 void RenderSnapshot::Take(const mjModel* model, const mjData* data, const Pose& T_world_camera,
-                          const CameraModel& camera, const Sway& sway, double away_s, const BodyMotions& bodies) {
-  Look(T_world_camera, camera);
+                          const CameraModel& camera, const MotionBound& bound, double half_exposure_s,
+                          const BodyMotions& bodies) {
+  SetCamera(T_world_camera, camera);
   mjvCamera as_set;
   mjv_defaultCamera(&as_set);
   as_set.type = mjCAMERA_USER;
   const mjvOption option = OnlyGeoms();
-  // MuJoCo asks for a writable mjData for its scratch stack; the state stays as it is.
+  // MuJoCo needs a writable mjData for its scratch stack; the state does not change.
   mjv_updateScene(model, const_cast<mjData*>(data), &option, nullptr, &as_set, mjCAT_STATIC | mjCAT_DYNAMIC, &scene);
-  DropUnseen(model, T_world_camera, camera, sway, away_s, bodies, scene);
+  DropUnseen(model, T_world_camera, camera, bound, half_exposure_s, bodies, scene);
   NearAndSmallFirst(model, T_world_camera.translation(), scene);
 }
 
@@ -140,20 +143,20 @@ void RenderSnapshot::Move(const std::vector<MovingGeom>& geoms, double dt_s) {
   }
 }
 
-void RenderSnapshot::Look(const Pose& T_world_camera, const CameraModel& camera) {
-  scene.camera[0] = scene.camera[1] = GlCamera(T_world_camera, camera);  // MuJoCo draws from the mean of the two
+void RenderSnapshot::SetCamera(const Pose& T_world_camera, const CameraModel& camera) {
+  scene.camera[0] = scene.camera[1] = GlCamera(T_world_camera, camera);  // MuJoCo uses the mean of the stereo pair
 }
 
 namespace {
 
 using ReadPixels = void (*)(int x, int y, int width, int height, unsigned format, unsigned type, void* pixels);
-constexpr unsigned kGlRgba = 0x1908, kGlUnsignedByte = 0x1401;  // of GL's registry
+constexpr unsigned kGlRgba = 0x1908, kGlUnsignedByte = 0x1401;  // from the OpenGL registry
 
 void BgrOfRgba(const std::uint8_t* rgba, std::size_t pixels, std::uint8_t* bgr) {
   std::size_t i = 0;
 #ifdef __SSSE3__
   const __m128i order = _mm_setr_epi8(2, 1, 0, 6, 5, 4, 10, 9, 8, 14, 13, 12, -1, -1, -1, -1);
-  for (; i + 6 <= pixels; i += 4)  // writes 16 bytes for 12: the rest comes next
+  for (; i + 6 <= pixels; i += 4)  // writes 16 bytes of which 12 count; the next write overwrites the rest
     _mm_storeu_si128(reinterpret_cast<__m128i*>(bgr + 3 * i),
                      _mm_shuffle_epi8(_mm_loadu_si128(reinterpret_cast<const __m128i*>(rgba + 4 * i)), order));
 #endif
@@ -177,7 +180,7 @@ struct Renderer::Impl {
 };
 
 Renderer::Renderer(const mjModel* model, const CameraModel& camera, Gl gl) {
-  // MuJoCo reads the buffer's size and quality from the model: ours, whatever the room says.
+  // MuJoCo reads the size and quality of the buffer from the model, so a copy gets ours instead of the room's.
   const std::unique_ptr<mjModel, decltype(&mj_deleteModel)> copy(mj_copyModel(nullptr, model), &mj_deleteModel);
   copy->vis.global.offwidth = camera.width;
   copy->vis.global.offheight = camera.height;
@@ -205,7 +208,7 @@ void Renderer::Draw(RenderSnapshot& snapshot, std::span<std::uint8_t> bgr) {
   const GlContext::Current current(impl.context);
   mjr_setBuffer(mjFB_OFFSCREEN, &impl.mjr);
   mjr_render(impl.viewport, &snapshot.scene, &impl.mjr);
-  // As the buffer has them: MuJoCo's own reading asks for three bytes a pixel, and Mesa then converts one by one.
+  // Read RGBA, the buffer's own format. mjr_readPixels asks for three bytes per pixel, which Mesa converts one by one.
   const int width = impl.viewport.width, height = impl.viewport.height;
   impl.read_pixels(0, 0, width, height, kGlRgba, kGlUnsignedByte, impl.rgba.data());
   const std::size_t pixels = static_cast<std::size_t>(width);
