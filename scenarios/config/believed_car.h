@@ -1,4 +1,4 @@
-// The car as the stack knows it, and what of a scenario's sensors it has.
+// The car as the stack knows it, and which of a scenario's sensors it has.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace merlin {
 
-// The car's description, and what a calibration found better.
+// The car's description, corrected by the calibration file if there is one.
 CarDescription BelievedCar(const CarChoice& choice);
 
-// Takes out of the sensors the colour camera and the compass that the car does not have, with a warning for each. Throws
-// InputError where the scenario requires colour.
+// Removes the colour camera and the compass from the sensors if the car does not have them, with a warning for each.
+// Throws InputError if the scenario requires colour.
 void LeaveOutWhatTheCarLacks(const CarDescription& car, Sensors& sensors, std::vector<std::string>& warnings);
 
 }  // namespace merlin

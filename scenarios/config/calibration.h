@@ -1,4 +1,4 @@
-// The car's calibration, and the drives it comes from, as files.
+// Files of the car's calibration and of the measured drives that it is computed from.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,12 @@
 
 namespace merlin {
 
-// The keys of CarCalibration, all of them. Throws InputError: file and line, unknown key (names the nearest), missing one,
-// a value out of its range: all faults at once.
+// Reads the keys of CarCalibration; all are required. Throws InputError with file and line for an unknown key (and
+// suggests the nearest), a missing key, or a value out of range. It lists all faults at once.
 CarCalibration ReadCalibration(const std::filesystem::path& file);
 std::string ToYaml(const CarCalibration& calibration);
 
-// The keys of MeasuredDrives: `straights: [{encoder_counts: 74112, distance_m: 5.003}]`,
+// Reads the keys of MeasuredDrives: `straights: [{encoder_counts: 74112, distance_m: 5.003}]`,
 // `circles: [{steering_rad: 0.25, diameter_m: 2.61}]`. Throws as above.
 MeasuredDrives ReadDrives(const std::filesystem::path& file);
 

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Links such as those in /dev/serial/by-id lead to the same port.
+// Resolves links such as those in /dev/serial/by-id.
 std::string RealPath(const std::string& port) {
   std::error_code unreadable;
   const fs::path real = fs::weakly_canonical(port, unreadable);
@@ -27,8 +27,8 @@ void RequireDistinctDevices(const HardwareConfig& config, const fs::path& file) 
     if (port.empty()) return;
     const auto [other, is_new] = taken.emplace(RealPath(port), device);
     if (!is_new)
-      throw InputError(file.string(), "names a device twice",
-                       "a port of its own for " + other->second + " and " + device, port + " for both");
+      throw InputError(file.string(), "names a device twice", "different ports for " + other->second + " and " + device,
+                       port + " for both");
   };
   take("drive", config.drive.serial.port);
   if (config.compass) take("compass", config.compass->serial.port);
@@ -42,7 +42,7 @@ void RequireFits(const HardwareConfig& config, const Scenario& scenario, const f
                      "'" + config.car + "'");
   if (scenario.sensors.color && scenario.sensors.color->required && !config.color)
     throw InputError(file.string(), "names no colour camera",
-                     "one, for the scenario needs it (sensors.color.required)");
+                     "one, because the scenario needs it (sensors.color.required)");
 }
 
 }  // namespace merlin

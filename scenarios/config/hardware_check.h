@@ -1,4 +1,4 @@
-// What a hardware file must not say, beyond what each key allows by itself.
+// Checks of a hardware file that involve more than one key.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,11 @@
 
 namespace merlin {
 
-// Throws InputError where two devices are said to be at the same port, under whatever names of it. file: for the error.
+// Throws InputError if two devices have the same port, also under different names (links). file: for the message.
 void RequireDistinctDevices(const HardwareConfig& config, const std::filesystem::path& file);
 
-// Throws InputError where the file is another car's than the scenario's, or names no colour camera and the scenario
-// requires one.
+// Throws InputError if the file belongs to another car than the scenario, or lacks a colour camera that the scenario
+// requires.
 void RequireFits(const HardwareConfig& config, const Scenario& scenario, const std::filesystem::path& file);
 
 }  // namespace merlin

@@ -8,18 +8,18 @@
 
 namespace merlin {
 
-// YAML: a map for each device (drive, compass, depth, color, clock), its keys those of the device's config. Throws
-// InputError: no such file, broken YAML, an unknown key (names the nearest), a value out of its range; all at once. Also
-// where it names a device twice.
+// YAML with a map for each device (drive, compass, depth, color, clock), whose keys are the fields of the device's
+// config. Throws InputError for a missing file, broken YAML, an unknown key (and suggests the nearest), or a value out
+// of range; it lists all faults at once. Also throws if two devices have the same port.
 HardwareConfig ReadHardwareFile(const std::filesystem::path& yaml);
 
-// Such a file's text, with every default written out.
+// The text of a hardware file, with every default written out.
 std::string ToYaml(const HardwareConfig& config);
 
-// What the scenario says of the cameras, and where the car's description has them.
+// The cameras of a scenario: data sheets, rates and settings, and their poses from the car's description.
 HardwareCameras CamerasOf(const Scenario& scenario);
 
-// The depth camera's settings that a scenario asks for; those to begin with where its integration time is automatic.
+// The depth camera's settings from a scenario. With automatic integration time: the settings to start with.
 DepthSettings SettingsOf(const DepthSensor& sensor, const DepthCameraSheet& sheet);
 
 }  // namespace merlin

@@ -46,7 +46,7 @@ const char* Words(CameraKind kind) {
                                       : "no camera";
 }
 
-// What is wrong with a sheet of its own kind, its reader says.
+// A file of unknown kind passes: the reader of the data sheet reports what is wrong with it.
 fs::path CameraOfKind(CameraKind kind, const std::string& name) {
   const std::vector<std::string> known = CameraNamesOf(kind);
   const fs::path file =

@@ -12,8 +12,8 @@
 namespace merlin {
 namespace {
 
-// A path in a scenario stands beside it, where there is such a file: so it works from any folder, and so does what is
-// written out of it.
+// Turns a path relative to the scenario's folder into an absolute one, if there is such a file. The scenario then works
+// from any current folder, and so does the scenario.yaml written from it.
 void Anchor(std::string& name, const std::filesystem::path& folder) {
   std::error_code ignored;
   const std::filesystem::path beside = folder / name;
@@ -21,7 +21,7 @@ void Anchor(std::string& name, const std::filesystem::path& folder) {
     name = std::filesystem::absolute(beside).lexically_normal().string();
 }
 
-// A behavior's former name still works, with a warning.
+// The former name of a behavior still works, with a warning.
 void UseNewName(Scenario& scenario, const std::string& file, YamlFile& yaml) {
   std::string& name = scenario.task.behavior;
   const BehaviorInfo* const behavior = FindBehavior(name);
@@ -35,7 +35,7 @@ void UseNewName(Scenario& scenario, const std::string& file, YamlFile& yaml) {
   }
 }
 
-// Of a key that has gone, the one that took its place.
+// Reports a key that no longer exists together with its replacement.
 void RefuseFormerKey(YamlFile& yaml) {
   YAML::Node node = YAML::Clone(yaml.root());
   for (const char* key : {"perception", "integration", "adapt"}) {
@@ -46,7 +46,7 @@ void RefuseFormerKey(YamlFile& yaml) {
   yaml.ThrowFaults();
 }
 
-// What no range of a single value says.
+// Rules that the range of a single value cannot express.
 void CheckRules(const Scenario& scenario, YamlFile& yaml) {
   if (scenario.curtain != "open" && scenario.curtain != "closed")
     yaml.Fault("curtain", "expected open or closed, got '" + scenario.curtain + "'");

@@ -1,4 +1,4 @@
-// What is run and how it is judged: a scenario file, resolved.
+// A scenario: what is run and how it is judged. Read from a file, with all defaults filled in.
 #pragma once
 
 #include <cstdint>
@@ -34,10 +34,10 @@ void Visit(Visitor& v, CarStart& c) {
 struct CarChoice {
   std::string model = "merlin";  // models/<name>/<name>.urdf, or a path
   CarStart start;
-  DrivetrainConfig drivetrain;  // of the twin: how the true car differs from its model
-  bool pan = false;         // the unit that turns the cameras moves (pan_joint of the model); false: it is held ahead.
-                            // It sweeps by itself where the lens is narrow (autonomy/look_around.h)
-  std::string calibration;  // what the stack believes: a file of `merlin calibrate odometry`; empty: the model
+  DrivetrainConfig drivetrain;  // for the twin only: how the true car differs from its model
+  bool pan = false;  // whether the pan unit (pan_joint of the model) moves; false: it is held ahead. With a narrow
+                     // lens it sweeps by itself (autonomy/look_around.h)
+  std::string calibration;  // file of `merlin calibrate odometry` that the stack uses; empty: the values of the model
 };
 
 template <class Visitor>
@@ -49,20 +49,20 @@ void Visit(Visitor& v, CarChoice& c) {
   v("calibration", c.calibration);
 }
 
-// Of one sub-frame. Nothing (`auto` in the file): the stack chooses it, frame by frame.
+// Integration time of one sub-frame. None (`auto` in the file): the stack chooses it for each frame.
 struct IntegrationTime {
   std::optional<double> us;
 };
 
 struct DepthSensor {
   std::string camera = "pmd_3k_s";  // models/cameras/<name>.yaml, or a path
-  double rate_hz = 20.0;            // of the stack too; up to the sheet's
+  double rate_hz = 20.0;            // also the rate of the stack; at most that of the data sheet
   std::string effects = "all";      // all, raw, ideal, or names
-  IntegrationTime integration_us;   // auto, or a number; valid ones: the camera's sheet
+  IntegrationTime integration_us;   // auto or a number; the data sheet has the valid range
   double frequency_mhz = 20.0;
-  double second_frequency_mhz = 0.0;  // 0: none; another valid one: eight sub-frames, and a range that wraps later
-  bool post_processing = false;       // the maker's own: low amplitudes masked, 3x3 median
-  std::optional<double> latency_s;    // default: the sheet's
+  double second_frequency_mhz = 0.0;  // 0: none; else eight sub-frames and a larger unambiguous range
+  bool post_processing = false;       // of the manufacturer: masks low amplitudes, 3x3 median
+  std::optional<double> latency_s;    // default: that of the data sheet
 };
 
 template <class Visitor>
@@ -80,9 +80,9 @@ void Visit(Visitor& v, DepthSensor& c) {
 struct ColorSensor {
   std::string camera = "ccd";
   double rate_hz = 10.0;
-  bool required = true;               // without GL: stop before it starts (true), or run without colour (false)
-  std::optional<double> exposure_us;  // fixed, at gain 1; default: automatic. Valid ones: the camera's sheet
-  bool motion_blur = false;           // eight pictures a frame, each at the cost of one
+  bool required = true;               // without GL: true refuses to start, false runs without colour
+  std::optional<double> exposure_us;  // fixed, with gain 1; default: automatic; the data sheet has the valid range
+  bool motion_blur = false;           // mean of eight pictures per frame, which takes eight times as long
   std::optional<double> latency_s;
 };
 
@@ -99,7 +99,7 @@ void Visit(Visitor& v, ColorSensor& c) {
 struct CompassSensor {
   double rate_hz = 10.0;
   double noise_rad = 0.0087;  // one sigma of each angle; 0.5 deg (data sheets: 0.3-1 deg)
-  std::vector<Steel> steel;   // of the twin: what bends its field
+  std::vector<Steel> steel;   // for the twin only: steel that distorts the magnetic field
 };
 
 template <class Visitor>
@@ -111,7 +111,7 @@ void Visit(Visitor& v, CompassSensor& c) {
 
 struct Sensors {
   DepthSensor depth;
-  std::optional<ColorSensor> color;  // not listed: the robot has none
+  std::optional<ColorSensor> color;  // none if the scenario does not list it
   std::optional<CompassSensor> compass;
 };
 
@@ -126,18 +126,18 @@ struct Scenario {
   std::string room;              // models/rooms/<name>.xml, or a path
   std::string curtain = "open";  // open or closed; closed needs a room with a curtain
   CarChoice car;
-  double duration_s = 60.0;  // the run ends here at the latest; earlier when the task is done
+  double duration_s = 60.0;  // longest time; the run ends earlier when the task is done
   std::uint64_t seed = 1;
   Sensors sensors;
   Task task;
   std::string map;  // map.slam of an earlier run: the car starts in it, and searches for its place; empty: a new map
-  std::vector<sim::ObstacleConfig> obstacles;  // of the twin, as actors
+  std::vector<sim::ObstacleConfig> obstacles;  // for the twin only, like actors
   std::vector<sim::ActorConfig> actors;
   std::vector<CheckLimit> checks;
   PerceptionConfig perception;
   SlamConfig slam;
   PilotConfig pilot;
-  std::vector<std::string> warnings;  // one sentence each, of what the file's author should know; not in the file
+  std::vector<std::string> warnings;  // one sentence each for the author of the file; not a key
 };
 
 template <class Visitor>
@@ -158,9 +158,10 @@ void Visit(Visitor& v, Scenario& c) {
   v("pilot", c.pilot);
 }
 
-// name: of a file in scenarios/ without its ending, or a path; paths in it are relative to its own folder. overrides: "a.b=c" each, applied over the file.
-// Throws InputError: unknown scenario or key (names the nearest), broken YAML (file and line), a value of the wrong kind or
-// out of its range, an unknown check or behavior: all faults at once, a line each.
+// name: a file in scenarios/ without its extension, or a path. Paths in the file are relative to its folder. overrides:
+// settings "a.b=c" that replace those of the file. Throws InputError for an unknown scenario or key (and suggests the
+// nearest), broken YAML (with file and line), a value of the wrong kind or out of range, and an unknown check or
+// behavior. It lists all faults at once, one per line.
 Scenario ReadScenario(const std::string& name, const std::vector<std::string>& overrides);
 
 // The scenario with every default written out; reading it gives the same scenario.
