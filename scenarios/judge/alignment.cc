@@ -10,8 +10,8 @@ namespace merlin {
 namespace {
 
 constexpr double kDistanceTolerance = 0.1;  // evo's default: a tenth of the distance
-// Weight of the orientations against the positions' covariance. Far below any real path's spread: it moves the mean
-// square error by less than 1e-8 m2, and decides only what the positions leave open.
+// Weight of the orientations relative to the covariance of the positions. It is far below the spread of any real path:
+// it changes the mean square error by less than 1e-8 m2, and decides only what the positions do not determine.
 constexpr double kOrientationWeight_m2 = 1e-9;
 
 bool AllFinite(std::span<const PosePair> pairs) {
@@ -28,7 +28,7 @@ std::vector<double> TruePath_m(std::span<const PosePair> pairs) {
   return path_m;
 }
 
-// The instant after i nearest to a distance further along the path, the first of equals; nothing if none is near enough.
+// The instant after i that is nearest to distance_m further along the path, the first of equals; none if too far off.
 std::optional<std::size_t> Partner(const std::vector<double>& path_m, std::size_t i, double distance_m) {
   const auto at_least = [&path_m, i](double length_m) {
     return std::partition_point(path_m.begin() + i + 1, path_m.end(),

@@ -1,5 +1,5 @@
-// How far an estimated path lies from the true one. The figures are those of the evo package (M. Grupp), so that anyone
-// can recompute them from trajectory_truth.tum and trajectory_estimate.tum:
+// Errors of an estimated trajectory against the true one. The definitions are those of the evo package (M. Grupp), so
+// that anyone can recompute them from trajectory_truth.tum and trajectory_estimate.tum:
 //   evo_ape tum TRUTH ESTIMATE -a [-s]
 //   evo_rpe tum TRUTH ESTIMATE --delta 1 --delta_unit m --all_pairs --pairs_from_reference [--pose_relation angle_deg]
 #pragma once
@@ -20,37 +20,38 @@ struct PosePair {
   Pose T_map_base = Pose::Identity();
 };
 
-// The instants both have, by equal stamps to the nanosecond.
+// Pairs of poses with equal stamps, to the nanosecond.
 std::vector<PosePair> PairAtEqualStamps(const Trajectory& truth, const Trajectory& estimate);
 
-// Of many errors, as evo counts them. spread: standard deviation of all of them, not of a sample; median: of an even
-// number the mean of the middle two.
+// Statistics as in evo. spread: standard deviation of the population (division by n). median: for an even number of
+// errors the mean of the middle two.
 struct ErrorStatistics {
   double rmse = 0.0, mean = 0.0, median = 0.0, spread = 0.0, min = 0.0, max = 0.0;
 };
-ErrorStatistics StatisticsOf(std::vector<double> errors);  // of at least one
+ErrorStatistics StatisticsOf(std::vector<double> errors);  // at least one
 
-// What may be done to an estimate before it is compared: nothing, turn and shift, or turn, shift and scale.
+// Transform fitted to an estimate before the comparison: none, rotation and translation, or also scale.
 enum class Alignment { kNone, kSe3, kSim3 };
 
 struct Ate {
   Pose T_world_map = Pose::Identity();
   double scale = 1.0;   // p_world = T_world_map * (scale * p_map)
-  double rmse_m = 0.0;  // of positions, after that alignment
+  double rmse_m = 0.0;  // of positions after the alignment
   ErrorStatistics error_m;
 };
 
 // Absolute trajectory error: the alignment minimises sum |p_world - T_world_map (scale p_map)|^2 over the positions (S.
 // Umeyama, "Least-squares estimation of transformation parameters between two point patterns", PAMI 1991). Where
-// positions leave the rotation open (one pose, standing, a straight line; evo refuses these) the orientations decide.
-// Nothing for no pairs, a number that is not finite, or a scale that nothing tells (an estimate that stands).
+// positions do not determine the rotation (one pose, standing, a straight line; evo refuses these) the orientations
+// decide. None if there are no pairs, a number is not finite, or the scale is undetermined (an estimate that stands
+// still).
 std::optional<Ate> AlignAndAte(std::span<const PosePair> pairs, Alignment alignment = Alignment::kSe3);
 
-// Relative pose errors over a distance along the true path: each instant i is paired with the later instant j whose path
-// length from i along the truth is nearest to the distance (the first of equals), unless that is off by more than a tenth.
-// E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), Q the truth, P the estimate (J. Sturm et al., "A benchmark for the evaluation of RGB-D
-// SLAM systems", IROS 2012), whose positions are scaled first. One of each a pair; empty where no pair exists or a number
-// is not finite.
+// Relative pose errors over a distance along the true path. Each instant i is paired with the later instant j whose
+// true path length from i is nearest to the distance (the first of equals), if it is within a tenth of the distance.
+// E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), Q the truth, P the estimate (J. Sturm et al., "A benchmark for the evaluation of
+// RGB-D SLAM systems", IROS 2012), where the positions of P are scaled first. One error of each kind per pair; empty if
+// there is no pair or a number is not finite.
 struct RelativeErrors {
   std::vector<double> translation_m, rotation_rad;
 };
@@ -62,7 +63,7 @@ struct Rpe {
   std::size_t pairs = 0;
 };
 
-// Those over 1 m; nothing where there are none.
+// Rmse of the relative errors over 1 m; none if there are no pairs.
 std::optional<Rpe> RpeOverOneMetre(std::span<const PosePair> pairs);
 
 // Length of the path through the positions.

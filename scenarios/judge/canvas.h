@@ -1,4 +1,4 @@
-// A white sheet to draw figures on, in pixels from its upper left corner, averaged down from a larger one.
+// A white canvas for figures, in pixels from its upper left corner. It is drawn larger and averaged down.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@ namespace merlin {
 
 enum class TextAlign { kLeft, kMiddle, kRight };
 
-inline const cv::Scalar kInk(45, 40, 38);  // of text and axes; blue, green, red
+inline const cv::Scalar kInk(45, 40, 38);  // colour of text and axes; blue, green, red
 
 class Canvas {
  public:
@@ -21,13 +21,13 @@ class Canvas {
   void Line(const std::vector<Eigen::Vector2d>& points_px, double width_px, const cv::Scalar& color,
             bool closed = false);
   void Dot(const Eigen::Vector2d& p_px, double radius_px, const cv::Scalar& color);
-  // A point of a cloud: a square, quicker than a dot.
+  // A point of a cloud, drawn as a square, which is faster than a dot.
   void Speck(const Eigen::Vector2d& p_px, double edge_px, const cv::Scalar& color);
-  // ASCII text on its base line; size_px: height of capitals.
+  // ASCII text; p_px is on its base line. size_px: height of capitals.
   void Text(const Eigen::Vector2d& p_px, const std::string& text, double size_px, const cv::Scalar& color,
             TextAlign align = TextAlign::kLeft, bool bold = false);
   static double TextWidth_px(const std::string& text, double size_px);  // of text that is not bold
-  // An 8-bit BGR picture, each of its pixels as a square of this many.
+  // An 8-bit BGR picture, each of its pixels drawn as a square with edges of scale pixels.
   void Picture(const Eigen::Vector2d& corner_px, const cv::Mat& bgr, int scale);
 
   std::string ToPng() const;  // throws MachineError

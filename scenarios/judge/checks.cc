@@ -13,7 +13,7 @@
 namespace merlin {
 namespace {
 
-// Every figure as numbers under the name a check calls it by.
+// All metrics as single numbers under the names that checks use.
 struct Figure {
   std::string name;
   std::vector<std::optional<double>> values;
@@ -79,7 +79,7 @@ Check EvaluateOne(const CheckLimit& limit, const Figure& figure, bool knows_trut
 void RequireKnown(const CheckLimit& limit, const std::string& where) {
   const std::vector<Figure> figures = Figures({});
   if (!Find(figures, limit))
-    throw InputError(where, fmt::format("unknown check '{}'", limit.name), "a metric's name and _max or _min",
+    throw InputError(where, fmt::format("unknown check '{}'", limit.name), "the name of a metric with _max or _min",
                      fmt::format("'{}'; the nearest is '{}'", limit.name, NearestCheck(figures, limit.name)));
   if (!std::isfinite(limit.limit))
     throw InputError(where, "limit of check " + limit.name, "a finite number", fmt::format("{}", limit.limit));

@@ -1,4 +1,4 @@
-// The checks a scenario asks for, and the verdict they give.
+// The checks of a scenario, and the verdict that follows from them.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace merlin {
 
-// A line of a scenario's checks: a metric's name (of a nested one "stack_ms.p99", of the first of two values
-// "map_size_m.0") and "_max" or "_min".
+// One check of a scenario. name: the name of a metric with "_max" or "_min" appended. A nested metric is
+// "stack_ms.p99", the first of two values "map_size_m.0".
 struct CheckLimit {
   std::string name;
   double limit = 0.0;
@@ -18,18 +18,19 @@ struct CheckLimit {
 
 struct Check {
   std::string name{};
-  std::optional<double> value{};  // of a metric of two values the one nearer to failing; empty if one is not known
+  std::optional<double> value{};  // of two values the one nearer to failing; none if one of them is not known
   double limit = 0.0;
-  bool judged = true;  // false: this run cannot know the metric, see CanKnow
-  bool pass = false;   // false also where it is not judged
+  bool judged = true;  // false if this run cannot know the metric, see CanKnow
+  bool pass = false;   // also false if not judged
 };
 
-// Throws InputError for a name that is no metric's with _max or _min (names the nearest), or a limit that is not
-// finite. where: the file, and the line if known.
+// Throws InputError if the name is not that of a metric with _max or _min (and suggests the nearest), or if the limit
+// is not finite. where: the file, and the line if known.
 void RequireKnown(const CheckLimit& limit, const std::string& where);
 
-// Each limit judged, in the order given: value <= limit, value >= limit; both values of a metric of two. A metric that is
-// not known fails; one that this run cannot know (CanKnow) is not judged. Throws as RequireKnown.
+// Judges each limit in the order given: value <= limit for _max, value >= limit for _min, and for both values of a
+// metric with two. A metric without a value fails, unless this run cannot know it (CanKnow): then it is not judged.
+// Throws like RequireKnown.
 std::vector<Check> Evaluate(const std::vector<CheckLimit>& limits, const Metrics& metrics, bool knows_truth,
                             const std::string& where);
 

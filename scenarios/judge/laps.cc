@@ -8,15 +8,16 @@
 namespace merlin {
 namespace {
 
-constexpr double kAtCentre_m = 0.1;       // nearer than this the car stands over the centre
-constexpr double kRounding_turns = 1e-9;  // a path that ends where it began has crossed the line
+constexpr double kAtCentre_m = 0.1;       // nearer than this the path does not wind around the centre
+constexpr double kRounding_turns = 1e-9;  // so that a path that ends where it began has crossed the line
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Of the area, whichever way round the corners run; none for an outline without area.
+// Centroid of the area, for either order of the corners; none for an outline without area.
 std::optional<Eigen::Vector2d> Centroid(const Outline& outline) {
   if (outline.size() < 3) return std::nullopt;
-  const Eigen::Vector2d origin = outline.front();  // keeps the products small, far from the world's origin
+  const Eigen::Vector2d origin =
+      outline.front();  // keeps the products small if the room is far from the world's origin
   double doubled_area_m2 = 0.0, size_m2 = 0.0;
   Eigen::Vector2d moment = Eigen::Vector2d::Zero();
   for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
@@ -29,7 +30,7 @@ std::optional<Eigen::Vector2d> Centroid(const Outline& outline) {
   return origin + moment / doubled_area_m2;
 }
 
-// The line of laps.h, in an upright frame at the centre: n points at the nearest outer wall, u to the left of n.
+// The starting line of laps.h, in a frame at the centre: n points towards the nearest outer wall, u to the left of n.
 class StartingLine {
  public:
   StartingLine(const Eigen::Vector2d& start_centre, const OutlineWall& wall, double to_wall_m) {
@@ -39,7 +40,7 @@ class StartingLine {
     n_min_m_ = std::max(n.dot(start_centre) - to_wall_m, 0.0);
     n_rad_ = std::atan2(n.y(), n.x());
   }
-  // Where the line is at a distance from the centre, as an angle about the centre, continuous.
+  // Angle of the line about the centre at a distance from it; a continuous function.
   double Angle_rad(double distance_m) const {
     const double n_m = std::sqrt(std::max(distance_m * distance_m - u_m_ * u_m_, n_min_m_ * n_min_m_));
     return n_rad_ + std::atan2(u_m_, n_m);
@@ -49,10 +50,10 @@ class StartingLine {
   double u_m_, n_min_m_, n_rad_;
 };
 
-// How far the path has wound, in turns since it left the starting line: whole numbers are on the line.
+// Winding of the path in turns since it left the starting line; whole numbers are on the line.
 class LapCount {
  public:
-  // What was wound before does not count: a lap takes a whole turn from here at least, and ends on the line.
+  // Forgets the winding so far: a lap takes at least a whole turn from here, and ends on the line.
   void Begin(double turns) {
     next_left_ = std::ceil(turns + 1.0 - kRounding_turns);
     next_right_ = std::floor(turns - 1.0 + kRounding_turns);
@@ -74,7 +75,7 @@ class LapCount {
 
 int CountLaps(const Trajectory& truth, const Outline& outline) {
   const std::optional<Eigen::Vector2d> centre = Centroid(outline);
-  std::vector<Eigen::Vector2d> path;  // from the centre
+  std::vector<Eigen::Vector2d> path;  // relative to the centre
   for (const StampedPose& pose : truth)
     if (centre && pose.T.translation().allFinite()) path.push_back(pose.T.translation().head<2>() - *centre);
   if (path.empty()) return 0;

@@ -6,7 +6,7 @@
 
 namespace merlin {
 
-// A lap: the path winds once around the centre of the outline's area, either way round, and crosses the starting line
+// A lap: the path winds once around the centroid of the outline, in either direction, and crosses the starting line
 // again. The width of the corridor and the lane do not matter.
 //
 // The starting line runs from the centre to the start and on to infinity:
@@ -16,9 +16,9 @@ namespace merlin {
 //   corridor s             s  the start; from e outwards the line stands square to the nearest outer wall
 //   ---------+---------    outer wall
 //
-// Driving back takes back what was wound. A path that comes within 0.1 m of the centre does not wind around it: the
-// count of the lap under way starts anew. After a lap the next one begins on the line, either way round.
-// Positions that are not finite are passed over. 0 for a room without an outline, or one without area.
+// Driving back unwinds the path. A path that comes within 0.1 m of the centre does not wind around it, so the lap under
+// way starts again there. After a lap the next one begins at the line, in either direction. Positions that are not
+// finite are skipped. Returns 0 if the outline is missing or has no area.
 int CountLaps(const Trajectory& truth, const Outline& outline);
 
 }  // namespace merlin

@@ -15,7 +15,7 @@ namespace merlin {
 namespace {
 
 constexpr double kCeiling_m = 2.5;
-constexpr double kFloor_m = 0.1;  // what is lower is drawn pale: the walls make the map
+constexpr double kFloor_m = 0.1;  // lower points are drawn pale, so that walls stand out
 
 // Blue, green, red.
 const cv::Scalar kPaper(255, 255, 255), kGrid(230, 232, 232), kPale(120, 115, 110), kFloorColor(214, 220, 208);
@@ -45,7 +45,7 @@ std::vector<Eigen::Vector2d> Positions(const Trajectory& trajectory, const Pose&
   return positions;
 }
 
-// The cloud without its outermost hundredth on each side: a single stray point must not shrink the picture.
+// The box around the cloud without the outermost 1 % on each side, so that a stray point does not shrink the picture.
 void AddBulk(Box& box, const std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) return;
   const std::ptrdiff_t stray = std::ssize(points) / 100, last = std::ssize(points) - 1;
@@ -62,7 +62,7 @@ void AddBulk(Box& box, const std::vector<Eigen::Vector3d>& points) {
   box.Add(high);
 }
 
-// The largest of 1, 2, 5 times a power of ten that is not above the length.
+// The largest number of the form 1, 2 or 5 times a power of ten that does not exceed the length.
 double RoundLength_m(double length_m) {
   const double power = std::pow(10.0, std::floor(std::log10(length_m)));
   const double digit = length_m / power;
@@ -123,7 +123,7 @@ void DrawScaleBar(Sheet& sheet, double length_m) {
                       kInk);
 }
 
-// From the right: the two paths, the plan, the heights' colours.
+// Legend, from the right: the two paths, the plan, the colours of heights.
 void DrawLegend(Sheet& sheet, bool has_outline, const cv::Mat& ramp) {
   const double y_px = sheet.Height_px() - 38;
   double x_px = Sheet::kWidth_px - Sheet::kMargin_px;

@@ -1,4 +1,4 @@
-// The picture of a run: the map from above over the true plan, with the true and the estimated path.
+// The picture of a run: the map seen from above, the true plan, and the true and the estimated path.
 #pragma once
 
 #include <optional>
@@ -24,8 +24,8 @@ struct MapPicture {
   std::optional<double> ate_rmse_m{};
 };
 
-// A PNG file's bytes, 1400 pixels wide, world x to the right and y up. Points are coloured by their height, those above
-// the ceiling's height of 2.5 m as the ones at it. What is not finite is left out.
+// The bytes of a PNG file, 1400 pixels wide, with world x to the right and y up. Points are coloured by height, up to
+// the ceiling's 2.5 m. Values that are not finite are left out.
 std::string ToPng(const MapPicture& picture);
 
 }  // namespace merlin

@@ -23,7 +23,7 @@ bool IsOfWall(const Eigen::Vector3d& normal, const OutlineWall& wall) {
   return std::abs(normal.head<2>().dot(wall.Normal())) >= kNormalCosine;
 }
 
-// offsets_m[k]: distances from the line of walls[k] of the map's points that belong to it.
+// offsets_m[k]: distances of the map points of walls[k] from the line of that wall.
 std::vector<std::vector<double>> OffsetsFromWalls(const PointGrid& grid, const std::vector<OutlineWall>& walls) {
   std::vector<std::vector<double>> offsets_m(walls.size());
   for (const Eigen::Vector3d& p : grid.points()) {
@@ -84,7 +84,7 @@ MapSize MeasureMapSize(std::span<const MapPoint> map, const Pose& T_world_map, c
   for (std::size_t k = 0; k < 2 && k < walls.size(); ++k) {
     const std::optional<std::size_t> opposite = Opposite(walls, k);
     if (!opposite) continue;
-    // Both normals point out of the room, or both into it: along the first one the opposite offset counts backwards.
+    // Both normals point out of the room, or both into it, so the offset of the opposite wall has the opposite sign.
     const double plan_m = walls[k].Offset_m(0.5 * (walls[*opposite].a_m + walls[*opposite].b_m));
     size.plan_m[k] = std::abs(plan_m);
     const std::optional<double> here_m = WallOffset_m(offsets_m[k]);

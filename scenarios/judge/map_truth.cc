@@ -15,13 +15,13 @@ constexpr double kSampleStep_m = 0.05;
 constexpr double kSampleHeight_m = 1.0;
 constexpr double kEyeHeight_m = 0.35;
 constexpr double kEyeStep_m = 0.25;
-constexpr double kSight_m = 7.0;  // within the 7.495 m at which a 20 MHz camera's range wraps
+constexpr double kSight_m = 7.0;  // below 7.495 m, where the range of a 20 MHz camera wraps
 constexpr double kHitTolerance_m = 0.05;
 constexpr double kShownReach_m = 0.10;
 constexpr double kShownHeightMin_m = 0.1;
 constexpr double kWallHeightMin_m = 0.3;
 const double kLevelSine = std::sin(20.0 * std::numbers::pi / 180.0);
-constexpr std::size_t kJudgedMax = 20000;  // bounds the rays
+constexpr std::size_t kJudgedMax = 20000;  // limits the number of rays
 
 std::vector<Eigen::Vector3d> Eyes(const Trajectory& truth) {
   std::vector<Eigen::Vector3d> eyes;

@@ -18,7 +18,7 @@ StackTimes Percentiles(std::vector<double> ms) {
   return {at(0.5), at(0.99), ms.back()};
 }
 
-// The figures that need the path and the map against the truth.
+// The metrics that compare path and map with the truth.
 void Compare(const StackOutcome& outcome, const GroundTruth& truth, Measured& measured) {
   Metrics& metrics = measured.metrics;
   const std::vector<PosePair> pairs = PairAtEqualStamps(truth.path, outcome.estimate);

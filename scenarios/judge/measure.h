@@ -1,4 +1,4 @@
-// The judge's first half: the figures of a run, from what the stack found out and what was true.
+// The first half of the judge: computes the metrics of a run from the results of the stack and the ground truth.
 #pragma once
 
 #include "robot/base/first_fault.h"
@@ -15,9 +15,9 @@ struct Measured {
   MapSize size{};
 };
 
-// All figures but those of devices, time and memory, which the runner knows. truth null: not known; then the distance
-// is the odometry's, and the figures that need the truth stay empty. A figure that cannot be had is left out, and the
-// fault kept.
+// Computes all metrics except those of devices, time and memory, which the runner sets. truth: null if not known; then
+// the distance is that of the odometry, and metrics that need the truth stay empty. If computing a metric fails, it is
+// left out and the exception is added to faults.
 Measured Measure(const StackOutcome& outcome, const GroundTruth* truth, FirstFault& faults);
 
 }  // namespace merlin

@@ -1,4 +1,4 @@
-// The figures of a run.
+// The metrics of a run.
 #pragma once
 
 #include <array>
@@ -14,24 +14,24 @@ struct StackTimes {
   std::optional<double> p50, p99, max;
 };
 
-// Figures of a run, in result.json's order. Empty: not known, null in JSON; a number that is not finite counts as
-// empty.
+// In the order of result.json. A metric that is not known is empty here and null in JSON; one that is not finite counts
+// as empty.
 struct Metrics {
   std::optional<double> sim_time_s, wall_time_s, setup_s, real_time_factor, distance_m;
-  std::optional<std::int64_t> laps, collisions, loops_closed;  // loops: that the map was corrected by
+  std::optional<std::int64_t> laps, collisions, loops_closed;  // loops_closed: loop closures that corrected the map
   std::optional<double> ate_rmse_m, ate_online_rmse_m, rpe_translation_percent, rpe_rotation_deg_per_m;
   std::array<std::optional<double>, 2> map_size_m, map_size_error_percent;
   std::optional<double> map_to_plan_p95_m, coverage_percent;
   std::optional<std::int64_t> depth_frames, color_frames, frames_dropped;
   StackTimes stack_ms;
   std::optional<double> peak_rss_mb, stack_rss_mb;
-  // Of scenarios with an obstacle only; left out of result.json where empty.
+  // Only for scenarios with an obstacle or actor; left out of result.json if empty.
   std::optional<double> obstacle_gap_m, obstacle_stop_s;
   // Of scenarios that start in a map only, and left out likewise: when the car knew its place in it, since the first frame.
   std::optional<double> place_found_s, place_found_m;
 };
 
-// The one list of names: visit(name, figure) for each, in result.json's order.
+// Calls visit(name, metric) for each metric in the order of result.json. This is the only list of names.
 template <class Visitor>
 void VisitMetrics(const Metrics& m, Visitor visit) {
   visit("sim_time_s", m.sim_time_s);
@@ -62,9 +62,9 @@ void VisitMetrics(const Metrics& m, Visitor visit) {
   visit("place_found_m", m.place_found_m);
 }
 
-// Whether a run can know a figure at all. Without the truth: not what compares with it (the distance is the odometry's
-// then). With it: not the memory of the stack alone, for the simulation shares its process. name: as a check calls it, so
-// that "map_size_m.0" is one of map_size_m.
+// Whether a run can know a metric at all. Without the truth it cannot know metrics that compare with it (the distance
+// then comes from the odometry). With the truth it cannot know the memory of the stack alone, because the simulation
+// runs in the same process. name: as in a check, for example "map_size_m.0" for the first value of map_size_m.
 inline bool CanKnow(std::string_view name, bool knows_truth) {
   if (name == "stack_rss_mb") return !knows_truth;
   if (knows_truth) return true;

@@ -1,4 +1,4 @@
-// The plan a map is judged against: the outer outline of a room, in the world's frame, floor at z = 0.
+// The plan that a map is compared with: the outer outline of a room, in the world frame, floor at z = 0.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@
 
 namespace merlin {
 
-// Corners [m] in order, either way round, the last joined to the first. Fewer than three: the room has no outline.
+// Corners [m] in order, clockwise or counter-clockwise; the last is joined to the first. Fewer than three: no outline.
 using Outline = std::vector<Eigen::Vector2d>;
 
 // One outer wall: the outline's edge from a to b.
@@ -17,7 +17,7 @@ struct OutlineWall {
 
   double Length_m() const { return (b_m - a_m).norm(); }
   Eigen::Vector2d Along() const { return (b_m - a_m).normalized(); }
-  // Unit vector to the right of the edge; the outward one where the corners run counter-clockwise.
+  // Unit vector to the right of the edge, which points outward if the corners run counter-clockwise.
   Eigen::Vector2d Normal() const { return {Along().y(), -Along().x()}; }
   // Signed distance of p from the wall's line, positive on the normal's side.
   double Offset_m(const Eigen::Vector2d& p) const { return Normal().dot(p - a_m); }
@@ -28,7 +28,7 @@ struct OutlineWall {
   }
 };
 
-// Walls in the outline's order; none for fewer than three corners. A corner given twice makes no wall.
+// Walls in the order of the outline; none for fewer than three corners. A repeated corner makes no wall.
 inline std::vector<OutlineWall> Walls(const Outline& outline) {
   std::vector<OutlineWall> walls;
   if (outline.size() < 3) return walls;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr char kExpected[] = "an empty folder, a new one, or one that a run of merlin left";
 
-// Whether there is such a folder. Refuses what is something else.
+// Whether the folder exists. Throws if the path is something else.
 bool IsThere(const fs::path& path) {
   if (path.empty()) throw InputError("--out", "is empty", "a folder's path");
   std::error_code error;
@@ -35,7 +35,7 @@ bool IsThere(const fs::path& path) {
   return false;
 }
 
-// The folder itself, or the nearest of its parents that is there.
+// The folder itself or the nearest of its parents that exists.
 fs::path NearestThatIsThere(const fs::path& path) {
   fs::path nearest = fs::absolute(path);
   std::error_code error;
@@ -46,7 +46,8 @@ fs::path NearestThatIsThere(const fs::path& path) {
   return nearest;
 }
 
-// Only an attempt tells: file systems may be read-only, and in /proc even root makes nothing.
+// Only an attempt shows whether a folder is writable: a file system may be read-only, and in /proc even root cannot
+// write.
 void TryToWriteIn(const fs::path& folder, const fs::path& path) {
   std::string attempt = (folder / ".merlin-XXXXXX").string();
   if (::mkdtemp(attempt.data()) == nullptr)
@@ -54,7 +55,7 @@ void TryToWriteIn(const fs::path& folder, const fs::path& path) {
   ::rmdir(attempt.c_str());
 }
 
-// Whether a run of ours left it. Refuses a folder of anyone else's.
+// Whether it is the output of an earlier run. Throws for a folder with other files.
 bool IsOurs(const fs::path& path) {
   std::error_code error;
   if (fs::is_regular_file(fs::symlink_status(path / OutputFolder::kMarker, error))) return true;
@@ -67,15 +68,14 @@ bool IsOurs(const fs::path& path) {
 int OpenMarker(const fs::path& path) {
   const int marker = ::open((path / OutputFolder::kMarker).c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (marker < 0) RefuseOutput(path, "cannot be written", errno);
-  if (::flock(marker, LOCK_EX | LOCK_NB) != 0 &&
-      errno == EWOULDBLOCK) {  // a file system without locks is taken as it is
+  if (::flock(marker, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {  // a file system without locks is accepted
     ::close(marker);
     RefuseOutput(path, kExpected, "a folder in which another run is at work");
   }
   return marker;
 }
 
-// Both words have one length, so that writing one over the other never leaves half of each.
+// Both texts have the same length, so that one can overwrite the other without leaving a mixture.
 void Mark(const fs::path& path, int marker, bool complete) {
   const std::string_view text = complete ? "merlin run: complete\n" : "merlin run: running \n";
   const ssize_t written = ::pwrite(marker, text.data(), text.size(), 0);
@@ -86,7 +86,7 @@ void Mark(const fs::path& path, int marker, bool complete) {
 
 void Empty(const fs::path& path) {
   std::error_code error;
-  fs::remove(path / "result.json", error);  // first: what is half removed is no finished run
+  fs::remove(path / "result.json", error);  // first, so that a half-emptied folder does not look like a finished run
   std::vector<fs::path> entries;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) entries.push_back(entry.path());
   if (error) RefuseOutput(path, "cannot be read", error.value());

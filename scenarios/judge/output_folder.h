@@ -1,4 +1,4 @@
-// The folder a run leaves its files in.
+// The folder into which a run writes its files.
 #pragma once
 
 #include <filesystem>
@@ -6,20 +6,20 @@
 
 namespace merlin {
 
-// Holds one run, and never a mixture of two. A marker file, ".merlin-run", is written before all else and says
-// "running" until Finish, then "complete"; result.json comes last. So a folder without result.json is no finished run.
-// While the object lives no other run on this machine can take the same folder.
+// Holds the files of one run, never a mixture of two. A marker file, ".merlin-run", is written first; it says "running"
+// until Finish and "complete" afterwards. result.json is written last, so a folder without it is not a finished run.
+// While the object exists, no other run on this machine can use the same folder.
 class OutputFolder {
  public:
   static constexpr std::string_view kMarker = ".merlin-run";
 
-  // Throws as the constructor does, and changes nothing: to be asked before the work whose results it is to hold.
+  // Throws like the constructor but changes nothing. For a check before the work whose results the folder is to hold.
   static void Check(const std::filesystem::path& path);
 
-  // Takes the folder: one that does not exist is made, parents too; an empty one is used; one with a marker of ours (a
-  // regular file of that name) is emptied whole, result.json first; a link to a folder counts as the folder. Throws
-  // InputError, with nothing changed, for any other that is not empty, for what is no folder, for one that cannot be
-  // written, and for one in which a run is at work. MachineError when the disk is full.
+  // Takes the folder. One that does not exist is created together with its parents. An empty one is used. One with our
+  // marker (a regular file) is emptied, result.json first. A link to a folder counts as the folder. Throws InputError,
+  // and changes nothing, if the folder has other files, is not a folder, is not writable, or is in use by another run.
+  // Throws MachineError if the disk is full.
   explicit OutputFolder(const std::filesystem::path& path);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -27,7 +27,7 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  // Writes a file of the run, whole or not at all. Throws MachineError.
+  // Writes a file of the run, completely or not at all. Throws MachineError.
   void Write(std::string_view name, std::string_view bytes) const;
 
   // Writes result.json and marks the run complete: call it last. Throws MachineError.

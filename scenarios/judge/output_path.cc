@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What WriteFile opens first; gone again, unless it was there before.
+// Tries to open the file that WriteFile opens first, and removes it unless it existed before.
 void TryPart(const fs::path& file, const std::string& option) {
   fs::path part = file;
   part += ".part";

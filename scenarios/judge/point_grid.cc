@@ -9,8 +9,7 @@ namespace {
 
 constexpr double kFarthest_m = 1e6;
 constexpr int kNeighboursMin = 5;
-constexpr double kLineShare =
-    0.01;  // of the variance along a line that its second direction must reach to span a plane
+constexpr double kLineShare = 0.01;  // a second variance below this share of the first: the points lie on a line
 
 }  // namespace
 

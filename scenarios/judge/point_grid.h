@@ -1,4 +1,4 @@
-// A cloud in a hashed grid, to find the points around a place.
+// A point cloud in a hashed grid, for searches within a radius.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,16 +16,16 @@
 
 namespace merlin {
 
-constexpr double kWallTop_m = 2.0;        // what stands higher is not judged as wall
-constexpr double kNormalRadius_m = 0.15;  // around a point, of the neighbours that give its normal (design: map_size_m)
+constexpr double kWallTop_m = 2.0;        // higher points do not count as wall
+constexpr double kNormalRadius_m = 0.15;  // the normal of a point comes from its neighbours within this radius
 
-// The map's points in the world's frame; those that are not finite, or beyond 1e6 m, are left out.
+// The map's points in the world frame, without those that are not finite or beyond 1e6 m.
 std::vector<Eigen::Vector3d> ToWorld(std::span<const MapPoint> map, const Pose& T_world_map);
 
 // Columns of cells over x and y, each sorted by height. Points are visited in an order that depends on the cloud only.
 class PointGrid {
  public:
-  // radius_m: of every later search. Points: finite, within 1e6 m.
+  // radius_m: the radius of all searches. points: finite and within 1e6 m.
   PointGrid(std::vector<Eigen::Vector3d> points, double radius_m);
 
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
@@ -65,8 +65,8 @@ class PointGrid {
   std::unordered_map<std::uint64_t, Column> columns_;
 };
 
-// Unit normal of the cloud at p, sign open: the direction of least spread of the points within the grid's radius.
-// Nothing for fewer than five of them, or when they lie on a line.
+// Unit normal of the cloud at p, with either sign: the direction in which the points within the grid's radius spread
+// least. None if there are fewer than five points or they lie on a line.
 std::optional<Eigen::Vector3d> NormalAt(const PointGrid& grid, const Eigen::Vector3d& p);
 
 }  // namespace merlin

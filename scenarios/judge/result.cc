@@ -24,8 +24,9 @@ Json ToJsonValue(const StackTimes& times) {
 }
 Json ToJsonValue(const std::optional<std::string>& hash) { return hash ? Json(*hash) : Json(); }
 
-// One character as the value of an XML 1.0 attribute may hold it (section 2.2, Char): markup and white space escaped,
-// for a parser makes blanks of bare line ends; what it may not hold, control characters and noncharacters, as '?'.
+// One character as part of an XML 1.0 attribute value (section 2.2, Char). Markup and white space are escaped, because
+// a parser turns bare line ends into blanks. Control characters and noncharacters, which XML does not allow, become
+// '?'.
 std::string XmlCharacter(char32_t code, std::string_view bytes) {
   switch (code) {
     case '&':
@@ -45,7 +46,7 @@ std::string XmlCharacter(char32_t code, std::string_view bytes) {
   }
 }
 
-// Bytes that are no UTF-8 become U+FFFD, as in result.json.
+// Invalid UTF-8 becomes U+FFFD, as in result.json.
 std::string Xml(std::string_view text) {
   std::string escaped;
   while (!text.empty()) {

@@ -12,7 +12,7 @@
 
 namespace merlin {
 
-// SHA-256 as hexadecimal digits; empty where a run had none of it.
+// SHA-256 in hexadecimal digits; none if the run has no such data.
 struct Hashes {
   std::optional<std::string> state, depth, color, trajectory, map;
 };
@@ -21,8 +21,8 @@ struct RunResult {
   std::string scenario{};
   std::uint64_t seed = 0;
   Verdict verdict = Verdict::kFail;
-  // What ended the run before its time, but not an interruption: a lost device, an empty battery, a car that does not get
-  // on; else empty.
+  // What ended the run early, other than an interruption: a lost device, an empty battery, a car that makes no
+  // progress. Empty if nothing did.
   std::string fault{};
   std::vector<Check> checks{};
   Metrics metrics{};
@@ -30,11 +30,11 @@ struct RunResult {
   std::vector<std::pair<std::string, std::string>> versions{};  // of the program and what it links: name, version
 };
 
-// The text of result.json; "pass" of a check that was not judged is null. Bytes that are no UTF-8 become U+FFFD.
+// The text of result.json. "pass" is null for a check that was not judged. Invalid UTF-8 becomes U+FFFD.
 std::string ToJson(const RunResult& result);
 
-// The text of junit.xml: one test case a check, and one named "run", in error where the run was
-// interrupted or ended by a fault; a check that was not judged is skipped. UTF-8 stays as it is; what XML may not hold is replaced, so that it is well formed.
+// The text of junit.xml: one test case per check, and one named "run", which is an error if the run was interrupted or
+// ended by a fault. A check that was not judged is skipped. Characters that XML does not allow are replaced.
 std::string ToJUnit(const RunResult& result);
 
 }  // namespace merlin

@@ -1,4 +1,4 @@
-// A canvas with a plot of the world, to scale, between a header and a footer: what a map is drawn on.
+// A canvas for maps: a plot of the world, to scale, between a header and a footer.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +26,7 @@ class Sheet {
   static constexpr double kWidth_px = 1400.0;
   static constexpr double kMargin_px = 48.0;
 
-  // Shows the box, with some space around it. It holds at least one point.
+  // Shows the box, which must hold at least one point, with some space around it.
   explicit Sheet(const Box& box);
 
   double Height_px() const;

@@ -1,4 +1,4 @@
-// What the stack found out in a run, as plain data: the judge compares it with the truth and writes it to files.
+// The results of the stack in a run, as plain data. The judge compares them with the truth and writes them to files.
 #pragma once
 
 #include <optional>
@@ -13,15 +13,16 @@
 namespace merlin {
 
 struct StackOutcome {
-  Trajectory estimate;        // T_map_base at every depth frame, as corrected at the end
-  Trajectory online;          // the same frames, as the car drove by them
-  std::vector<MapPoint> map;  // points seen at least as often as the scenario asks for
-  GridMap grid;               // one unknown cell where nothing was seen: still a map
-  double path_m = 0.0;        // by the odometry
+  Trajectory estimate;        // T_map_base at every depth frame, after all corrections
+  Trajectory online;          // the same frames with the poses that were known at the time
+  std::vector<MapPoint> map;  // points observed at least points_min times
+  GridMap grid;               // a single unknown cell if nothing was observed
+  double path_m = 0.0;        // path length from odometry
   int loops_closed = 0;
-  std::vector<double> stack_ms{};                          // one a depth frame: filter to decision
-  std::string map_slam{};                                  // the bytes of the file (slam/saved_map.h)
-  std::optional<double> place_found_s{}, place_found_m{};  // in the map of an earlier run
+  std::vector<double> stack_ms{};  // per depth frame: time from filter to decision
+  std::string map_slam{};          // the bytes of map.slam (slam/saved_map.h)
+  std::optional<double> place_found_s{},
+      place_found_m{};  // time and distance until the place in a loaded map was found
 };
 
 // points_min: see SlamConfig::map_points_min.

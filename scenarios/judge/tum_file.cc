@@ -14,16 +14,16 @@ namespace merlin {
 namespace {
 
 constexpr double kLargest_m = 1e9;
-constexpr double kLastStamp_s = 9e9;     // what a Time holds; Unix time until 2255
-constexpr double kUnitTolerance = 1e-3;  // files of four digits stay below
+constexpr double kLastStamp_s = 9e9;     // within the range of Time; Unix time until 2255
+constexpr double kUnitTolerance = 1e-3;  // rounding to four digits stays below
 constexpr double kShortestQuaternion = 1e-6;
 
 struct Match {
   std::size_t shorter = 0, longer = 0;
 };
 
-// evo's matching_time_indices (evo/core/sync.py of 1.38), step by step and in its doubles, so that equal stamps, and
-// stamps half-way between two, go where evo's go.
+// The same steps as evo's matching_time_indices (evo/core/sync.py of 1.38), also in doubles, so that equal stamps and
+// stamps halfway between two are paired as in evo.
 std::vector<Match> Matches(const Trajectory& shorter, const Trajectory& longer, Duration difference_max) {
   const double most_s = Seconds(difference_max);
   std::vector<Match> matches;
@@ -33,7 +33,7 @@ std::vector<Match> Matches(const Trajectory& shorter, const Trajectory& longer, 
     if (stamp_s < Seconds(longer.front().stamp) - most_s || stamp_s > Seconds(longer.back().stamp) + most_s) continue;
     auto above = std::ranges::upper_bound(longer, stamp, {}, &StampedPose::stamp);
     if (above == longer.end()) --above;
-    const double gap_above_s = Seconds(above->stamp) - stamp_s;  // below zero beyond the end
+    const double gap_above_s = Seconds(above->stamp) - stamp_s;  // negative beyond the end
     const double gap_below_s = above == longer.begin() ? HUGE_VAL : stamp_s - Seconds((above - 1)->stamp);
     const bool take_above = gap_above_s <= most_s && gap_above_s < gap_below_s;
     if (!take_above && gap_below_s > most_s) continue;

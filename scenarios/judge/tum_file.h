@@ -1,5 +1,5 @@
-// Trajectories of the TUM RGB-D benchmark: "stamp_s x y z qx qy qz qw" a line, "#" starts a comment. (Written:
-// writers.h.)
+// Reads trajectories in the format of the TUM RGB-D benchmark: one line "stamp_s x y z qx qy qz qw" per pose; "#"
+// starts a comment. writers.h writes them.
 #pragma once
 
 #include <string>
@@ -13,17 +13,18 @@ namespace merlin {
 
 struct TumFile {
   Trajectory trajectory{};
-  std::vector<std::string> warnings{};  // quaternions off unit length, which are normalised; equal stamps
+  std::vector<std::string> warnings{};  // for quaternions not of unit length (they are normalised) and equal stamps
 };
 
-// Reads the whole text; name: the file's, for the errors. Throws InputError with every fault, each with name and line:
-// a field that is missing, too much, no number or beyond 1e9, a quaternion of no length, a stamp that comes before the
-// one above it; and for a text without poses.
+// Parses the text of a file. name: of the file, for messages. Throws InputError with all faults, each with name and
+// line: a field that is missing, extra, not a number or beyond 1e9, a quaternion of length 0, a stamp before that of
+// the line above; or if there are no poses.
 TumFile ParseTum(std::string_view text, const std::string& name);
 
-// Pairs as evo does: each pose of the trajectory that has fewer (of the estimate, where both have as many) with the
-// other's nearest in time, the earlier of two as near, at most the difference away. Two poses may get the same partner.
-// Of equal stamps the last serves poses at or after it, the first those before it.
+// Pairs like evo: each pose of the shorter trajectory (the estimate if both have the same length) gets the pose of the
+// other that is nearest in time, at most difference_max away; of two equally near ones the earlier. Two poses may get
+// the same partner. Of several poses with equal stamps, the last is used for poses at or after that stamp, the first
+// for poses before it.
 std::vector<PosePair> PairAtNearestStamps(const Trajectory& truth, const Trajectory& estimate, Duration difference_max);
 
 }  // namespace merlin

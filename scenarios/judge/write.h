@@ -1,4 +1,4 @@
-// The judge's second half: the files of a run, but for result.json and junit.xml, which need the verdict.
+// The second half of the judge: writes the files of a run except result.json and junit.xml, which need the verdict.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace merlin {
 
-// Trajectories, map, grid and picture (titled title, ASCII). Returns the hashes of the trajectory and the map as
-// written. A file that cannot be written is left out, and the fault kept: the rest comes.
+// Writes trajectories, map, grid and picture. title: of the picture, ASCII. Returns the hashes of the trajectory and
+// map files. If a file cannot be written, the exception is added to faults and the other files are still written.
 Hashes WriteRun(const std::string& title, const StackOutcome& outcome, const GroundTruth* truth,
                 const Measured& measured, const OutputFolder& folder, FirstFault& faults);
 

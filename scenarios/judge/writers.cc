@@ -12,7 +12,7 @@
 namespace merlin {
 namespace {
 
-static_assert(std::endian::native == std::endian::little);  // ToPly copies floats as they are
+static_assert(std::endian::native == std::endian::little);  // ToPly copies the bytes of floats
 
 // nav2_map_server's trinary mode: darker than occupied_thresh is occupied, lighter than free_thresh is free. 0.196 is
 // just below the darkness of 205, (255 - 205) / 255 = 0.19608, so that unknown stays unknown.

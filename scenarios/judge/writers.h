@@ -1,5 +1,4 @@
-// The files a run leaves, as bytes. Text is made first and written whole (WriteFile), so that what is hashed is what is
-// written.
+// The contents of the files of a run, as bytes. They are hashed as they are and written in one piece (WriteFile).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,14 +14,14 @@
 
 namespace merlin {
 
-// One line a pose: "stamp_s x y z qx qy qz qw", nine decimals, qw >= 0 (the TUM RGB-D benchmark's format).
+// One line per pose: "stamp_s x y z qx qy qz qw" with nine decimals and qw >= 0 (format of the TUM RGB-D benchmark).
 std::string ToTum(const Trajectory& trajectory);
 
 // Binary little-endian PLY: x y z (float) [m], red green blue (uchar).
 std::string ToPly(std::span<const MapPoint> map);
 
-// A map from above. cells: width x height, row by row, the row of the lowest y first; -1 unknown, else the chance [%]
-// that the cell is occupied, 0 to 100.
+// Occupancy grid, seen from above. cells: width x height, row by row, beginning with the lowest y; -1 is unknown, else
+// the probability [%] that the cell is occupied, 0 to 100.
 struct GridMap {
   int width = 0;
   int height = 0;
@@ -31,8 +30,8 @@ struct GridMap {
   std::vector<std::int8_t> cells{};
 };
 
-// The pair of files ROS 2's nav2_map_server reads: a picture (PGM, upper row the highest y; free 254, occupied 0,
-// unknown 205) and its description, which names the picture's file.
+// The two files that ROS 2's nav2_map_server reads: a picture (PGM, top row at the highest y; free 254, occupied 0,
+// unknown 205) and its description, which names the file of the picture.
 std::string ToPgm(const GridMap& grid);
 std::string ToMapYaml(const GridMap& grid, const std::string& pgm_name);
 

@@ -107,7 +107,7 @@ void DriveLoop::Supervise() {
   state_.energy = energy_.level();
 }
 
-// What the pilot would do, for as long as that holds: a tick without a frame does not prolong it.
+// The pilot's command while it is still valid. A tick without a new frame does not extend its validity.
 std::optional<DriveCommand> DriveLoop::Advice() const {
   if (!state_.decision || state_.energy == EnergyLevel::kEmpty) return std::nullopt;
   DriveCommand command = state_.decision->command;
@@ -135,19 +135,20 @@ void DriveLoop::ChooseExposure(const DepthFrame& frame) {
   UseDevice("depth camera", [&] { robot_.depth->Configure(next); });
 }
 
-// The stack means the angle of the wheels; the servo takes the angle that it will report. Nobody else converts.
+// Commands of the stack hold the angle of the wheels; the servo expects the angle that it will report. This is the only
+// place that converts between them.
 void DriveLoop::Send(DriveCommand command) {
   command.steering_rad = ServoAngle_rad(car_, command.steering_rad);
   UseDevice("drive", [&] { robot_.drive->Send(command); });
 }
 
-// Devices that throw now do not keep the others from being used.
+// Brakes and waits until the car stands. A device that throws does not keep the others from being used.
 void DriveLoop::Halt(FirstFault& faults) {
   const Time begin = robot_.clock->Now();
   std::optional<DriveState> before;
   while (robot_.clock->Now() - begin < kHaltLimit) {
     faults.Try([&] { Send({.speed_m_s = 0.0, .steering_rad = 0.0, .valid_for = kHaltValid}); });
-    // A drive that has gone tells nothing more: its microcontroller brakes by itself.
+    // A lost drive reports no speed to wait for; its microcontroller brakes by itself.
     if (robot_.drive->Status().health == DeviceStatus::Health::kAbsent) return;
     bool goes_on = false;
     faults.Try([&] { goes_on = robot_.clock->WaitUntil(robot_.clock->Now() + period_); });

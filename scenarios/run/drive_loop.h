@@ -1,5 +1,5 @@
-// The main loop, the same for the twin, a recording and the real car, with and without an operator: wait for the tick,
-// listen, perceive, locate, decide, supervise, arbitrate, drive.
+// The main loop: wait for the tick, poll devices, perceive, localise, decide, supervise, arbitrate, drive. It is the
+// same for the twin, a recording and the real car, with and without an operator.
 #pragma once
 
 #include <atomic>
@@ -33,10 +33,10 @@ enum class LoopEnd {
   kEndedFromOutside
 };
 
-// What an operator wants, asked at every tick.
+// Returns the operator's command. Called at every tick.
 using ManualInput = std::function<ManualCommand(Time now)>;
 
-// Called after every tick, in the loop's thread. False ends the run: somebody outside knows that the car is lost.
+// Called after every tick, in the loop's thread. Returns false to end the run, for example because the car is lost.
 using LoopObserver = std::function<bool(const LoopState&)>;
 
 class DriveLoop {
@@ -45,19 +45,19 @@ class DriveLoop {
   DriveLoop(const Robot& robot, const CarDescription& car, const PerceptionConfig& perception, const SlamConfig& slam,
             const Task& task, const PilotConfig& pilot, std::optional<SavedMap> former = {});
 
-  // Until the task is done, the clock ends, stop is set, the battery is empty (autonomy/energy.h), the car does not get on
-  // (autonomy/unstick.h), a device without which the car must not drive has failed (autonomy/supervise.h), the car gives up
-  // the search for its place in the former map, or the observer ends it. Then brakes, and waits until the car stands, as far
-  // as the clock permits. The same where something throws: the first exception leaves this function once the car stands.
-  // What a device throws, of whatever type, leaves it as a DeviceError that names the device.
-  // With an operator the pilot only advises the arbiter (autonomy/arbitrate.h), its task has no end, it does not give up,
-  // and an empty battery stops the pilot alone: the operator may bring the car home.
+  // Runs until the task is done, the clock ends, stop is set, the battery is empty (autonomy/energy.h), the car makes
+  // no progress (autonomy/unstick.h), a device that the car needs to drive has failed (autonomy/supervise.h), the car does
+  // not find its place in the former map, or the observer ends it. Then brakes the car and waits until it stands, as far
+  // as the clock permits. The same happens if something throws: the first exception leaves this function once the car
+  // stands. Whatever a device throws becomes a DeviceError that names the device.
+  // With an operator, the pilot only advises the arbiter (autonomy/arbitrate.h), its task never ends, and it does not
+  // give up. An empty battery then stops only the pilot, so that the operator can drive the car home.
   LoopEnd Run(const std::atomic<bool>& stop, const LoopObserver& observer, const ManualInput& manual = {});
 
-  const LoopState& state() const { return state_; }  // of the last tick
+  const LoopState& state() const { return state_; }  // after the last tick
   const Slam& slam() const { return slam_; }
   const Energy& energy() const { return energy_; }
-  const std::vector<double>& stack_ms() const { return stack_ms_; }  // one a depth frame: filter to decision
+  const std::vector<double>& stack_ms() const { return stack_ms_; }  // per depth frame: time from filter to decision
 
  private:
   LoopEnd Drive(const std::atomic<bool>& stop, const LoopObserver& observer, const ManualInput& manual);
@@ -75,7 +75,7 @@ class DriveLoop {
 
   Robot robot_;
   ExposureControl exposure_;
-  std::optional<double> integration_s_;  // as last asked for; nothing: as the camera was set up
+  std::optional<double> integration_s_;  // last one requested; none: that of the camera's initial settings
   Duration period_;
   Pipeline pipeline_;
   Slam slam_;
@@ -83,7 +83,7 @@ class DriveLoop {
   Energy energy_;
   Arbiter arbiter_;
   Supervisor supervisor_;
-  std::optional<Ears> ears_;  // since Run began
+  std::optional<Ears> ears_;  // set when Run begins
   LoopState state_;
   CarDescription car_;
   std::vector<double> stack_ms_;

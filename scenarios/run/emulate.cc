@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Duration kTick = std::chrono::milliseconds(50);
-constexpr Duration kAnswer = std::chrono::seconds(10);  // of each device
+constexpr Duration kAnswer = std::chrono::seconds(10);  // time for each device to answer
 constexpr double kAtRest_m_s = 0.01;
 
 std::string FirstLine(const fs::path& file) {
@@ -31,7 +31,7 @@ std::string FirstLine(const fs::path& file) {
   return line;
 }
 
-// The file that names the devices, there as long as this object. One that an emulator left is replaced.
+// The hardware file, which exists as long as this object. Replaces one left by an earlier emulator.
 class PublishedFile {
  public:
   explicit PublishedFile(fs::path file) : file_(std::move(file)) {
@@ -39,9 +39,9 @@ class PublishedFile {
     std::error_code error;
     if (!fs::exists(file_, error)) return;
     if (FirstLine(file_) != kEmulatedHardwareFile)
-      throw InputError("--hardware-file " + file_.string(), "is there already, and no emulator wrote it",
+      throw InputError("--hardware-file " + file_.string(), "already exists and was not written by merlin emulate",
                        "a new file, or one that merlin emulate left");
-    fs::remove(file_, error);  // whoever waits for it waits for the new one
+    fs::remove(file_, error);  // so that a program that waits for the file waits for the new one
   }
   ~PublishedFile() {
     std::error_code ignored;
@@ -65,7 +65,7 @@ class PublishedFile {
   std::string text_;  // empty: not published yet
 };
 
-// Every device answers a driver, and the driver is gone again.
+// Checks with a driver of our own that every device answers.
 void RequireAnswers(const HardwareConfig& devices, const HardwareCameras& cameras) {
   std::string complaints;
   for (const DeviceReport& report : CheckDevices(devices, cameras, kAnswer))
@@ -73,19 +73,19 @@ void RequireAnswers(const HardwareConfig& devices, const HardwareCameras& camera
   if (!complaints.empty()) throw MachineError(complaints);
 }
 
-// Until the driver that RequireAnswers was has left.
+// Waits until the driver of RequireAnswers has disconnected.
 void WaitForLeave(EmulatedRobot& robot, RealClock& clock) {
   while (robot.HasDriver()) clock.WaitUntil(clock.Now() + std::chrono::milliseconds(5));
 }
 
-// The true car.
+// True state of the car.
 struct CarNow {
   Time time;
   double speed_m_s;
   Pose T_world_base;
 };
 
-// What happens to the car between two ticks, in sentences.
+// Reports changes between two ticks as sentences.
 class Watch {
  public:
   Watch(Emulation& emulation, const std::function<void(const std::string&)>& say) : emulation_(emulation), say_(say) {}
@@ -96,7 +96,7 @@ class Watch {
     if (driven_ && !was_driven) Say(car.time, "a program drives the car");
     if (!driven_ && was_driven) {
       emulation_.robot().FreePorts();
-      Say(car.time, "the program that drove has gone, the car brakes");
+      Say(car.time, "the driving program has gone; the car brakes");
     }
     if (driven_ || stood_ || std::abs(car.speed_m_s) >= kAtRest_m_s) return;
     stood_ = true;

@@ -1,4 +1,5 @@
-// The twin behind its real drivers and protocols, both in this program: in real time, and the truth is known.
+// The twin's emulated devices and the real drivers that use them, in one process. Runs in real time; the truth is
+// known.
 #pragma once
 
 #include <memory>

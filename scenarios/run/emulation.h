@@ -1,4 +1,4 @@
-// The car of a scenario, emulated device by device (robot/emulated/), and the truth about it.
+// The car of a scenario with all its devices emulated (robot/emulated/), and the ground truth.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace merlin {
 
-// A folder of this program's own for the devices' sockets, gone with it.
+// A temporary folder for the sockets of the devices, removed with this object.
 class SocketFolder {
  public:
   SocketFolder();  // throws MachineError
@@ -30,21 +30,21 @@ class SocketFolder {
 
 class Emulation {
  public:
-  // The devices answer from now on. options: the scenario, gl, threads. clock outlives this. Throws as the twin's plug
-  // does, and InputError for a task that only the twin itself can do.
+  // The devices answer from here on. Of the options scenario, gl and threads count. clock must outlive this object.
+  // Throws like the twin's plug, and InputError for a task that only the twin can do.
   Emulation(const RunOptions& options, const Clock& clock);
 
   EmulatedRobot& robot() { return *robot_; }
-  // As a hardware file names them. The ToF camera's library is the one this program was built with; the environment's
-  // MERLIN_PMD_LIBRARY names another.
+  // The devices in the form of a hardware file. The library of the ToF camera is that of this build, unless the
+  // environment variable MERLIN_PMD_LIBRARY names another.
   HardwareConfig Devices() const;
-  // The scenario's; without colour where this machine cannot draw.
+  // The cameras of the scenario, without colour if this machine cannot draw.
   const HardwareCameras& cameras() const { return cameras_; }
   const std::string& renderer() const { return renderer_; }  // empty without colour
   // What the user should know, one sentence each.
   std::vector<std::string> Notes() const;
 
-  // Calls use(truth, world) while the world stands still. Throws what broke the world.
+  // Calls use(truth, world) while the simulation is paused. Rethrows an exception that has ended the simulation.
   template <class Use>
   auto WithTruth(const Use& use) {
     if (const std::exception_ptr failure = robot_->failure()) std::rethrow_exception(failure);
@@ -55,7 +55,7 @@ class Emulation {
   SocketFolder sockets_;
   std::string car_;
   HardwareCameras cameras_;
-  std::optional<Truth> truth_;  // before the robot, whose thread watches it until its end
+  std::optional<Truth> truth_;  // declared before robot_, whose thread uses it until it ends
   std::unique_ptr<EmulatedRobot> robot_;
   std::string renderer_;
   std::vector<std::string> notes_;

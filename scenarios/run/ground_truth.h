@@ -1,4 +1,4 @@
-// What the simulated world and its watcher know, as the data that the judge takes.
+// Turns the truth about the simulated world into the plain data that the judge uses.
 #pragma once
 
 #include "robot/types/ground_truth.h"
@@ -6,7 +6,7 @@
 
 namespace merlin {
 
-// range_m looks at the world as it stands now; the world outlives the result.
+// range_m of the result casts rays into the world's present state; the world must outlive the result.
 GroundTruth GroundTruthOf(const Truth& truth, const sim::World& world);
 
 }  // namespace merlin

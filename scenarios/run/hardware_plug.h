@@ -1,4 +1,4 @@
-// The real car: the devices that a hardware file names, in real time. Nobody knows the truth.
+// The real car: the devices named by a hardware file, in real time. The truth is not known.
 #pragma once
 
 #include <memory>
@@ -8,15 +8,15 @@
 
 namespace merlin {
 
-// Waits until every device of the robot has delivered. Throws MachineError, a sentence for each that has not after ten
-// seconds.
+// Waits until every device of the robot has delivered data. Throws MachineError with one sentence for each device that
+// has not after ten seconds.
 void RequireReady(HardwareRobot& robot);
 
-// Throws InputError for a task that needs a turntable: a car on the floor has none.
+// Throws InputError for a task that needs a turntable, which only the twin has.
 void RequireNoTurntable(const Scenario& scenario);
 
 // Opens options.hardware_file's devices, waits until all of them deliver, and checks that the car is fit to drive
-// (scenarios/run/preflight.h). Throws InputError or MachineError, a line for each fault; nothing has moved then.
+// (scenarios/run/preflight.h). Throws InputError or MachineError with one line per fault, before anything moves.
 std::unique_ptr<Plug> MakeHardwarePlug(const RunOptions& options);
 
 }  // namespace merlin

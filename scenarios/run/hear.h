@@ -1,4 +1,4 @@
-// The loop's ears: polls every device once a tick, and knows when each was last heard.
+// Polls every device once per tick and records when each was last heard.
 #pragma once
 
 #include <exception>
@@ -11,7 +11,7 @@
 
 namespace merlin {
 
-// Uses a device. Whatever its driver throws becomes a DeviceError that names the device.
+// Calls use(). Whatever the driver throws becomes a DeviceError that names the device.
 template <class Use>
 auto UseDevice(const std::string& device, const Use& use) {
   try {
@@ -25,13 +25,13 @@ auto UseDevice(const std::string& device, const Use& use) {
 
 class Ears {
  public:
-  // The robot's devices count as heard now.
+  // All devices of the robot count as heard at this time.
   explicit Ears(const Robot& robot);
 
-  // Everything that has arrived since the last call, and how each device is. Throws DeviceError.
+  // Collects everything that has arrived since the last call and updates devices(). Throws DeviceError.
   void Hear(LoopState::Heard& heard);
   const std::vector<SupervisedDevice>& devices() const { return devices_; }
-  // One that the robot has.
+  // The device of this name, which the robot must have.
   const SupervisedDevice& Of(const std::string& name) const;
 
  private:

@@ -1,6 +1,6 @@
-// One tick of the main loop as plain data: what was heard, what the stack made of it, what was decided and sent. Recorder,
-// operator station, progress and tests read this and nothing live. A copy is cheap, and stays as it is: frames and
-// observation are shared and never change.
+// One tick of the main loop as plain data: the measurements received, the stack's results, the decision and the command
+// sent. Recorder, operator station, progress and tests read only this. A copy is cheap and never changes: it shares
+// frames and observation, which are constant.
 #pragma once
 
 #include <memory>
@@ -21,9 +21,9 @@ namespace merlin {
 
 struct LoopState {
   Time now{0};
-  Time began{0};  // when the loop began: on a real car the clock runs before, while the car is checked
+  Time began{0};  // when the loop began; on a real car the clock starts earlier, for the checks
 
-  // What arrived in this tick, in order of stamps.
+  // Measurements that arrived in this tick, in order of stamps.
   struct Heard {
     std::vector<DriveState> drive;
     std::vector<CompassReading> compass;
@@ -32,26 +32,26 @@ struct LoopState {
     std::vector<std::shared_ptr<const ColorFrame>> color;
   } heard{};
   std::vector<SupervisedDevice> devices{};  // every device of the robot, in the same order at every tick
-  std::string stop{};                       // why the car must stop, one sentence; empty: drive on
-  std::vector<Outage> outages{};            // so far, of the devices that the run can do without
+  std::string stop{};                       // why the car must stop, as a sentence; empty: it may drive
+  std::vector<Outage> outages{};            // outages so far of devices that the run can do without
 
-  // What is known. Each is the newest, from this tick or an earlier one.
+  // The newest state of each kind, from this tick or an earlier one.
   DriveState drive{};
-  double speed_m_s = 0.0;  // by the encoder; negative: backwards
+  double speed_m_s = 0.0;  // from the encoder; negative: backwards
   EnergyLevel energy = EnergyLevel::kEnough;
   std::shared_ptr<const Observation> observation{};  // null before the first
-  std::optional<Pose> T_map_base{};                  // of that observation; none: mapping has not begun
-  double path_m = 0.0;                               // that the car has gone, by the map
-  int loops = 0;                                     // closed
+  std::optional<Pose> T_map_base{};                  // at that observation; none before mapping begins
+  double path_m = 0.0;                               // length of the path in the map so far
+  int loops = 0;                                     // loops closed so far
 
-  // What was decided.
-  std::optional<Decision> decision{};  // the pilot's newest
-  Time decided{0};                     // when it came; now: in this tick
-  ManualCommand manual{};              // of the operator; without one: nobody steers, autonomy is on
-  Arbitration arbitration{};           // the command that was sent, and whose it is
+  // Decision and command.
+  std::optional<Decision> decision{};  // newest decision of the pilot
+  Time decided{0};                     // when it was made; equals now if in this tick
+  ManualCommand manual{};              // of the operator; without an operator: not steering, autonomy enabled
+  Arbitration arbitration{};           // the command that was sent, and who gave it
 };
 
-// What the car is doing, for people: "follows the corridor", or who else drives ("manual", "nobody", ...).
+// What the car is doing, for display: "follows the corridor", or who drives instead ("manual", "nobody", ...).
 inline std::string Doing(const LoopState& state) {
   return state.arbitration.driver == Driver::kAutonomy ? state.decision->doing : Name(state.arbitration.driver);
 }

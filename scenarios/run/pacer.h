@@ -1,4 +1,4 @@
-// Holds a run back to the wall's pace, and tells of its progress now and then.
+// Slows a run down to a multiple of real time, and reports its progress a few times a second.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline double SecondsSince(WallClock::time_point begin) {
   return std::chrono::duration<double>(WallClock::now() - begin).count();
 }
 
-// Whoever stops reading what we tell does not stop the car.
+// Reports progress. An exception of the reader, for example a closed pipe, must not stop the car.
 template <class Progress>
 void Tell(const Progress& progress) {
   try {

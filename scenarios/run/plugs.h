@@ -1,4 +1,4 @@
-// The plugs of the program with the twin.
+// All plugs of the build with the twin.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace merlin {
 
-// By options.robot.
+// Makes the plug for options.robot.
 std::unique_ptr<Plug> MakePlug(const RunOptions& options);
 
 // RunScenario of run.h with these plugs.

@@ -23,23 +23,23 @@ constexpr double kStands_m_s = 0.01;
 
 constexpr double kStraight_m = 0.05, kStraightTolerance_m = 0.025;
 constexpr double kStop_m = 0.15;
-// From the end of the last command: the motor is braked within 0.2 s, and the car with 2 m/s2 (robot/hal/drive.h); the rest
-// is for states on their way.
+// Time to stop after the last command: the motor brakes within 0.2 s, then the car slows down at 2 m/s2
+// (robot/hal/drive.h). The rest allows for the latency of states.
 constexpr double kStopTime_s = 0.2 + kSpeed_m_s / 2.0 + 0.2;
 constexpr double kArc_m = 0.3, kArcSteering_rad = 0.3, kSteeringTolerance_rad = 0.05;
 constexpr double kTurnShare = 0.3, kTurnTolerance_rad = 3.0 / kDegrees;
 
 struct Interrupted {};
 
-// Drives a car and follows it by its wheels and its compass. Every call throws DeviceError where a device fails, and
+// Drives a car and tracks it by its wheels and its compass. Every call throws DeviceError if a device fails, and
 // Interrupted once stop is set.
 class Trial {
  public:
   Trial(const Robot& robot, const CarDescription& car, const std::atomic<bool>& stop)
       : robot_(robot), stop_(stop), ears_(robot), odometry_(car) {}
 
-  // Drives until the car has gone so far ahead (negative: back), but no longer than twice the time that takes and half a
-  // second: with a broken encoder the car would not stop.
+  // Drives this distance ahead (negative: back). Gives up after twice the expected time plus half a second, because
+  // with a broken encoder the car would never stop.
   void Go(double distance_m, double steering_rad) {
     const Pose T_odom_from = T_odom_base();
     const double speed_m_s = std::copysign(kSpeed_m_s, distance_m);
@@ -47,7 +47,7 @@ class Trial {
     while (robot_.clock->Now() < end && std::abs(PathSince(T_odom_from)) < std::abs(distance_m))
       Tick(DriveCommand{speed_m_s, steering_rad, kValid});
   }
-  // Commands to stand with this steering, for as long as a car takes to do so.
+  // Commands speed 0 with this steering angle, long enough for the car to stop.
   void Halt(double steering_rad = 0.0) {
     for (const Time end = robot_.clock->Now() + kSettle; robot_.clock->Now() < end;)
       Tick(DriveCommand{0.0, steering_rad, kValid});
@@ -61,17 +61,17 @@ class Trial {
     while (!last_) Tick(std::nullopt);
     return *odometry_.At(last_->stamp);
   }
-  // Along the path, positive ahead.
+  // Distance along the path, positive ahead.
   double PathSince(const Pose& T_odom_from) {
     const Eigen::Vector3d gone =
         T_odom_from.linear().transpose() * (T_odom_base().translation() - T_odom_from.translation());
     return std::copysign(gone.norm(), gone.x());
   }
   double TurnSince(const Pose& T_odom_from) { return WrapPi(Yaw(T_odom_base()) - Yaw(T_odom_from)); }
-  // Over the last 0.1 s: a single count between two states is no speed.
+  // Mean speed over the last 0.1 s, so that a single count between two states does not look like a speed.
   double speed_m_s() { return PathSince(*odometry_.At(last_->stamp - std::chrono::milliseconds(100))) / 0.1; }
   double steering_rad() const { return last_ ? last_->steering_rad : 0.0; }
-  // The mean of the compass while the car stands; nothing where none came.
+  // Mean compass yaw while the car stands; none if no reading came.
   std::optional<double> CompassYaw_rad() {
     compass_.clear();
     Halt(steering_rad());
@@ -108,7 +108,7 @@ class Trial {
   std::vector<double> compass_;  // yaws
 };
 
-// The wheels turn as the command says.
+// Checks that the wheels follow the command.
 std::string StraightFault(Trial& trial) {
   for (const double distance_m : {kStraight_m, -kStraight_m}) {
     const Pose T_odom_from = trial.T_odom_base();
@@ -121,7 +121,7 @@ std::string StraightFault(Trial& trial) {
   return "";
 }
 
-// The car stands once no command comes any more.
+// Checks that the car stops after the last command.
 std::string StopFault(Trial& trial) {
   const Pose T_odom_from = trial.T_odom_base();
   trial.Go(kStop_m, 0.0);
@@ -135,7 +135,7 @@ std::string StopFault(Trial& trial) {
                      kStopTime_s);
 }
 
-// The compass turns as the wheels say, on an arc to this side.
+// Checks that compass and wheels agree about the turn on an arc to this side.
 std::string TurnFault(Trial& trial, double side) {
   const double steering_rad = side * kArcSteering_rad;
   trial.Halt(steering_rad);
@@ -157,7 +157,7 @@ std::string TurnFault(Trial& trial, double side) {
                      side > 0.0 ? "left" : "right", kDegrees * wheels_rad, kDegrees * compass_rad);
 }
 
-// What is wrong, in the order in which it is tried.
+// Runs the checks in order and returns the faults of the first that fails.
 std::vector<std::string> Try(Trial& trial) {
   if (std::string fault = StraightFault(trial); !fault.empty()) return {std::move(fault)};
   if (std::string fault = StopFault(trial); !fault.empty()) return {std::move(fault)};
@@ -178,7 +178,8 @@ std::vector<std::string> PreflightMoving(const Robot& robot, const CarDescriptio
   } catch (const Interrupted&) {
   }
   try {
-    UseDevice("drive", [&] { robot.drive->Send({}); });  // whatever happened: it expires at once, and the car brakes
+    UseDevice("drive",
+              [&] { robot.drive->Send({}); });  // in every case: this command expires at once, so the car brakes
   } catch (const DeviceError& error) {
     faults.push_back(error.what());
   }

@@ -24,7 +24,7 @@ constexpr double kLevel_rad = 5.0 / kDegreesPerRad;
 constexpr float kSameRange_m = 1e-4f;
 constexpr int kSameGrey = 2;
 
-// Everything heard in the window.
+// Everything received in the time window.
 struct Heard {
   LoopState::Heard measurements;
   std::vector<SupervisedDevice> devices;
@@ -34,7 +34,7 @@ Heard Listen(const Robot& robot) {
   Heard heard;
   Ears ears(robot);
   ears.Hear(heard.measurements);
-  heard.measurements = {};  // what has waited since before
+  heard.measurements = {};  // discard what arrived before the window
   for (const Time end = robot.clock->Now() + kWindow; robot.clock->Now() < end;) {
     if (!robot.clock->WaitUntil(robot.clock->Now() + kListenPeriod)) break;
     ears.Hear(heard.measurements);
@@ -43,15 +43,15 @@ Heard Listen(const Robot& robot) {
   return heard;
 }
 
-// Of the device that delivered so many measurements in the window; empty: at its rate, as far as it is known.
+// The fault of a device that delivered count measurements in the window; empty if it delivers at its rate.
 std::string RateFault(const SupervisedDevice& device, std::size_t count) {
   const double expected_hz = device.status.rate_hz, got_hz = static_cast<double>(count) / Seconds(kWindow);
   if (count == 0) return fmt::format("the {} delivers nothing", device.name);
-  // One measurement more or less is a matter of when the window begins.
+  // The count may be off by one, depending on when the window begins.
   const double slack_hz = kRateShare * expected_hz + 1.0 / Seconds(kWindow);
   if (expected_hz <= 0.0 || std::abs(got_hz - expected_hz) <= slack_hz) return "";
-  return fmt::format("the {} delivers {:.1f} measurements a second; expected {:.1f}, give or take {:.0f} %",
-                     device.name, got_hz, expected_hz, 100.0 * kRateShare);
+  return fmt::format("the {} delivers {:.1f} measurements a second; expected {:.1f} +- {:.0f} %", device.name, got_hz,
+                     expected_hz, 100.0 * kRateShare);
 }
 
 std::string DriveFault(const std::vector<DriveState>& states, const CarDescription& car) {
@@ -102,7 +102,7 @@ std::string DepthFault(const std::vector<std::shared_ptr<const DepthFrame>>& fra
 
 std::string ColorFault(const std::vector<std::shared_ptr<const ColorFrame>>& frames) {
   for (const auto& frame : frames) {
-    int spread = 0;  // of a channel, from the first pixel's
+    int spread = 0;  // largest difference of a channel from the first pixel
     for (std::size_t i = 3; i < frame->bgr.size(); ++i)
       spread = std::max(spread, std::abs(int{frame->bgr[i]} - int{frame->bgr[i % 3]}));
     if (spread > kSameGrey) return "";

@@ -27,8 +27,8 @@ double PeakRss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-// What the run's caller is to throw: after the start no InputError is the user's fault, and the devices of a world that
-// waits for us are ours.
+// Converts an exception to the type that the caller is to throw. After the start an InputError is not the user's fault,
+// and a failing device of a simulated world that waits for us is a fault of this program.
 std::exception_ptr Blamed(const std::exception_ptr& fault, const PlugTraits& traits) {
   try {
     std::rethrow_exception(fault);
@@ -60,10 +60,10 @@ std::string Joined(const std::vector<std::string>& sentences) {
 // How the loop ended.
 struct Ending {
   LoopEnd end = LoopEnd::kTimeUp;
-  std::string reason;  // why before its time; empty: it did not, or somebody wished it
+  std::string reason;  // why it ended early; empty if it did not, or on request
 };
 
-// One run of whatever robot: drive, judge, write.
+// One run of any robot: drive, judge, write.
 class Session {
  public:
   Session(const RunOptions& options, Plug& plug, const CarDescription& car, std::optional<SavedMap> former,
@@ -144,7 +144,7 @@ class Session {
     return "";
   }
 
-  // All but the verdict.
+  // The result, except for the verdict.
   RunResult Judged() {
     RunResult result{.scenario = options_.name, .seed = options_.scenario.seed, .versions = Versions()};
     for (auto& version : plug_.versions()) result.versions.push_back(std::move(version));
@@ -167,7 +167,7 @@ class Session {
     return result;
   }
 
-  // Those of devices, time and memory.
+  // Metrics of devices, time and memory.
   Metrics WithOwnFigures(Metrics metrics) {
     metrics.wall_time_s = figures_.wall_time_s;
     metrics.setup_s = figures_.setup_s;
@@ -184,7 +184,7 @@ class Session {
     return metrics;
   }
 
-  // The verdict, by what has failed so far.
+  // Sets the verdict from what has failed so far.
   void Conclude(const Ending& ending, RunReport& report) {
     RunResult& result = report.result;
     if (faults_.get()) report.error = Blamed(faults_.get(), plug_.traits());
@@ -222,7 +222,8 @@ std::optional<SavedMap> FormerMap(const RunOptions& options) {
 RunReport RunScenario(const RunOptions& asked, const PlugMaker& make_plug, const std::atomic<bool>& stop) {
   const WallClock::time_point begin = WallClock::now();
   if (IsOnTurntable(asked.scenario.task) && asked.manual)
-    throw InputError("task.behavior", asked.scenario.task.behavior + ": nobody drives on the turntable", "merlin run");
+    throw InputError("task.behavior", asked.scenario.task.behavior + ": the car cannot be driven on the turntable",
+                     "merlin run");
   RunOptions options = asked;
   std::vector<std::string> warnings;
   const CarDescription car = BelievedCar(options.scenario.car);

@@ -31,7 +31,7 @@ void Truth::Watch(const sim::World& world) {
 }
 
 void Truth::WatchActors(const sim::World& world) {
-  constexpr double kFar_m = 10.0;  // beyond it no gap is of interest
+  constexpr double kFar_m = 10.0;  // larger gaps are not measured
   bool any = false;
   for (std::size_t i = 0; i < world.actors().size(); ++i) {
     if (!world.actors().present(i)) continue;

@@ -1,4 +1,4 @@
-// What really happened: watches the simulated world for the judge. The stack never sees it.
+// Records the ground truth of a simulated run for the judge. The stack never sees it.
 #pragma once
 
 #include <deque>
@@ -18,18 +18,18 @@ class Truth {
  public:
   Truth(const Scenario& scenario, const sim::World& world);
 
-  // After every step: counts contacts, hashes the state, watches over the car.
+  // Call after every step: counts contacts, hashes the state, and checks whether the car is lost.
   void Watch(const sim::World& world);
-  // Keeps the true pose at a stamp of the last second, between two steps if need be.
+  // Appends the true pose at a stamp within the last second to the trajectory, interpolated between steps.
   void Keep(Time stamp);
 
   const Trajectory& trajectory() const { return trajectory_; }
   int collisions() const { return collisions_; }
-  // Why the run must end; empty: nothing of the kind.
+  // Why the run must end; empty if it need not.
   const std::string& car_lost() const { return car_.lost(); }
   std::string state_hash() const { return state_.Hex(); }
   std::optional<double> obstacle_gap_m() const { return obstacle_gap_m_; }
-  // Of actors, too. Longest time in a row that the car stood while one was there; empty without any.
+  // Longest uninterrupted time that the car stood while an obstacle or actor was present; none without any.
   std::optional<double> obstacle_stop_s() const { return obstacle_stop_s_; }
 
  private:

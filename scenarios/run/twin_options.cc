@@ -27,7 +27,7 @@ void RequireMaterial(const std::string& where, const std::string& name, const si
                                NearestName(name, std::views::keys(materials.by_name))));
 }
 
-// With the files that their models are, and materials that are known.
+// The actors with model names resolved to files. Checks that their materials exist.
 void AddActors(const Scenario& scenario, const sim::Materials& materials, sim::WorldOptions& world) {
   sim::RefuseFaults(scenario.actors);
   world.obstacles = scenario.obstacles;

@@ -1,4 +1,4 @@
-// From a scenario to the twin it asks for.
+// Turns a scenario into the options of its twin.
 #pragma once
 
 #include <functional>
@@ -11,18 +11,18 @@
 
 namespace merlin {
 
-// Throws InputError for what the scenario's parts do not allow: rates, settings, materials, files.
+// Throws InputError for rates, settings, materials or files that the scenario's parts do not allow.
 TwinOptions TwinOptionsOf(const Scenario& scenario, const RunOptions& options);
 
-// Calls make with the options, colour included if this machine can draw it. Without GL a scenario that can do without
-// colour goes on depth alone, and note says so; one that needs it throws MachineError.
+// Calls make with the options, with colour if this machine can draw. Without GL, a scenario that does not require
+// colour runs with depth only, and note says so; for one that does, throws MachineError.
 void MakeWithColor(TwinOptions options, const Scenario& scenario, std::string& note,
                    const std::function<void(const TwinOptions&)>& make);
 
-// Throws InputError where a check compares the map with the plan, and the room has none.
+// Throws InputError if a check compares the map with the plan and the room has none.
 void RequirePlan(const Scenario& scenario, const sim::World& world);
 
-// Why there are no colours (empty: there are), and what the room's reader warned of; one sentence each.
+// Notes to the user, one sentence each: why there is no colour (without_color, may be empty), and the room's warnings.
 std::vector<std::string> NotesOf(const std::string& without_color, const sim::World& world);
 
 }  // namespace merlin

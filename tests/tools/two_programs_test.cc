@@ -1,5 +1,5 @@
-// The swap to the car, end to end: one program serves the simulated car's devices, another that links no simulation drives
-// them as it would the real ones.
+// The swap to the car, end to end: one program serves the simulated car's devices, another that links no simulation
+// drives them as it would the real ones.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -82,7 +82,7 @@ TEST_F(TwoPrograms, TheCarStandsWhenItsDriverIsKilledAndTheNextOneDrivesIt) {
   killed->Signal(SIGKILL);
   ASSERT_TRUE(Until([&] { return emulator_.HasSaid("the car stands"); })) << emulator_.Said();
   EXPECT_EQ(killed->Wait(), 128 + SIGKILL);
-  const double gone_s = TimeOf("the program that drove has gone"), stands_s = TimeOf("the car stands");
+  const double gone_s = TimeOf("the driving program has gone"), stands_s = TimeOf("the car stands");
   EXPECT_LE(stands_s - gone_s, 1.0) << emulator_.Said();  // the last command's rest, 0.2 s, v / (2 m/s^2), two looks
 
   const auto next = Drive("next", {"--duration", "2", "--set", "checks={}"});
