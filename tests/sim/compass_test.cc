@@ -32,7 +32,7 @@ TEST(Compass, ReadsRollPitchAndYawOfTheBody) {
 }
 
 TEST(Compass, IsPositiveForANoseDownAndALeftTurn) {
-  // By hand: pitch about y (left) lifts the tail; the nose (x) points down.
+  // By hand: a positive pitch about y (left) lifts the tail and points the nose (x) down.
   EXPECT_LT((Attitude(0, 0.1, 0).linear() * Eigen::Vector3d::UnitX()).z(), 0.0);
   EXPECT_NEAR(ReadCompass(Attitude(0, 0.1, 0), kNoiseless, 1, Time{0}, 0).pitch_rad, 0.1, 1e-12);
   EXPECT_NEAR(ReadCompass(FromXyYaw(0, 0, kPi / 2), kNoiseless, 1, Time{0}, 0).yaw_rad, kPi / 2, 1e-12);

@@ -13,7 +13,7 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kFront_m = 0.45;  // of the car, ahead of its base_link
+constexpr double kFront_m = 0.45;  // of the car's front, ahead of base_link
 
 const std::string kHall = std::string(kPlane) + R"(<geom type="box" pos="6 0 1" size=".1 6 1"/>
   <geom type="box" pos="-6 0 1" size=".1 6 1"/><geom type="box" pos="0 6 1" size="6 .1 1"/>
@@ -110,7 +110,7 @@ TEST(Actors, WaitWhileTheCarIsNearAheadOfThem) {
   EXPECT_NEAR(world->ActorDistance_m(0, 10.0), 0.5, 0.003);
   EXPECT_TRUE(MotionOf(world->Motions(), *world).still());
   EXPECT_TRUE(world->CarTouches().empty());
-  // The car backs away: it goes on where it stopped, as fast as before.
+  // The car backs away; the actor continues from where it stopped, at the same speed as before.
   Send(*world, -1.0, 0.0);
   StepFor(*world, 1.0);
   const double x_m = PositionOf(*world, "cart").x();
@@ -152,7 +152,7 @@ TEST(Actors, TakeEveryShapeInItsSizeAndStandOnTheGround) {
   }
 }
 
-// A wedge: its corners stand where the file has them, turned and moved with the actor.
+// A wedge. Its corners must be at the positions in the file, moved with the actor.
 TEST(Actors, TakeAModelWithBodiesAndAMesh) {
   const TemporaryFile model("wedge.xml", R"(<mujoco><asset>
     <mesh name="wedge" vertex="0 0 0  .4 0 0  0 .3 0  0 0 .5"/><material name="cloth_wool" rgba="1 0 0 1"/></asset>
@@ -194,7 +194,7 @@ TEST(Actors, ShippedModelsStandOnTheGround) {
   }
 }
 
-TEST(Actors, RefuseWhatIsWrongByItselfInOneSentenceEach) {
+TEST(Actors, RejectEachFaultInOneSentence) {
   const auto expect = [](ActorConfig actor, const std::string& says) {
     actor.where = "x.yaml:7";
     const std::string said = ErrorOf({actor});
@@ -235,7 +235,7 @@ TEST(Actors, RefuseTwoOfOneName) {
             "actor 'cart': name: expected a name of its own, got that of another actor");
 }
 
-TEST(Actors, RefuseAModelThatIsNone) {
+TEST(Actors, RejectABadModel) {
   const auto error_of = [](const std::string& text) {
     const TemporaryFile model("it.xml", text);
     return ErrorOf({{.name = "it", .model = model.path(), .path = {{0, 3, 0}}}});
@@ -256,7 +256,7 @@ TEST(Actors, RefuseToStartInTheCarAndMayComeIntoItLater) {
   EXPECT_NE(ErrorOf({Box({{0, 0.5, 0}})}).find("actor 'cart': it is present at the start and touches the car"),
             std::string::npos);
   ActorConfig huge = Box({{0, 0, 0}});
-  huge.size_m = {5, 5, 5};  // the car wholly within
+  huge.size_m = {5, 5, 5};  // the car is entirely inside
   EXPECT_NE(ErrorOf({huge}).find("actor 'cart': it is present at the start"), std::string::npos);
   const auto world = WorldWith({Box({{0.1, 0.6, 0}})});
   StepFor(*world, 0.1);
@@ -265,7 +265,7 @@ TEST(Actors, RefuseToStartInTheCarAndMayComeIntoItLater) {
 
 TEST(Actors, RefuseAPathThatLeavesTheRoom) {
   EXPECT_EQ(ErrorOf({Box({{0, 3, 0}, {1, 5, 5}})}, kHall), "no error");
-  EXPECT_EQ(ErrorOf({Box({{0, 3, 0}, {1, 50, 5}})}), "no error");  // no end
+  EXPECT_EQ(ErrorOf({Box({{0, 3, 0}, {1, 50, 5}})}), "no error");  // an infinite room
   const std::string out = ErrorOf({Box({{0, 3, 0}, {1, 5, 5}, {2, 5, 7}})}, kHall);
   EXPECT_NE(out.find("actor 'cart': its path leaves the room; expected all of it within the outline"),
             std::string::npos)
@@ -273,7 +273,7 @@ TEST(Actors, RefuseAPathThatLeavesTheRoom) {
   EXPECT_NE(out.find("path[2] at x 5 m, y 7 m"), std::string::npos) << out;
 }
 
-// An L: two points within, and the corner between them is not.
+// An L-shaped outline: both points lie inside, but the straight line between them cuts across the notch.
 TEST(RoomBox, HoldsALineOnlyIfAllOfItIsWithinTheOutline) {
   const std::vector<Eigen::Vector2d> outline{{0, 0}, {4, 0}, {4, 4}, {2, 4}, {2, 2}, {0, 2}};
   EXPECT_TRUE(HoldsLine(outline, {1, 1}, {3, 1}));

@@ -23,7 +23,7 @@ TEST(TimedPath, GoesEvenlyBetweenItsPointsAndFacesWhereItGoes) {
   ExpectAt(path, 0.0, {1, 5, 0}, {0, 0, 0}, 0.0);
   ExpectAt(path, 2.0, {1, 5, 0}, {0.5, 0, 0}, 0.0);
   ExpectAt(path, 3.0, {1.5, 5, 0}, {0.5, 0, 0}, 0.0);
-  ExpectAt(path, 6.5, {3, 5, 0}, {0, 0, 0}, 0.0);  // at rest as it came
+  ExpectAt(path, 6.5, {3, 5, 0}, {0, 0, 0}, 0.0);  // at rest, with the last yaw
   ExpectAt(path, 7.5, {3, 3.5, 0}, {0, -3, 0}, -kPi / 2);
   ExpectAt(path, 8.0, {3, 2, 0}, {0, 0, 0}, -kPi / 2);
   ExpectAt(path, 1e6, {3, 2, 0}, {0, 0, 0}, -kPi / 2);

@@ -1,4 +1,4 @@
-// The car as the renderer draws it, measured against its description.
+// Measures the car in rendered pictures and compares it with its description.
 #include <gtest/gtest.h>
 
 #include "sim/color/renderer.h"
@@ -7,7 +7,7 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kDistance_m = 40.0, kFocal_px = 32'000.0;  // 800 pixels a metre, all but parallel rays
+constexpr double kDistance_m = 40.0, kFocal_px = 32'000.0;  // 800 pixels per metre, nearly parallel rays
 const CameraModel kFar{
     .width = 640, .height = 480, .fx_px = kFocal_px, .fy_px = kFocal_px, .cx_px = 319.5, .cy_px = 239.5};
 
@@ -20,7 +20,7 @@ std::vector<std::uint8_t> PictureOf(const World& world, const Pose& T_world_came
   return bgr;
 }
 
-// Where the car is in the picture: what differs from the same picture without it, in metres about the picture's middle.
+// Extent of the car in the picture [m], about its middle: where the picture differs from the same one without the car.
 Eigen::AlignedBox2d Silhouette_m(const Eigen::Vector3d& middle, const Eigen::Matrix3d& rotation) {
   Pose T_world_camera = Pose::Identity();
   T_world_camera.linear() = rotation;
@@ -38,7 +38,7 @@ Eigen::AlignedBox2d Silhouette_m(const Eigen::Vector3d& middle, const Eigen::Mat
   return box;
 }
 
-// Tolerance: two pixels, and what 0.4 m of height change at 40 m.
+// Tolerance: two pixels, plus the change of scale over 0.4 m of height at 40 m.
 constexpr double kTolerance_m = 2.0 / 800.0 + 0.002;
 
 TEST(CarPicture, IsAsLongAndWideAsTheCarFromAbove) {
@@ -58,7 +58,7 @@ TEST(CarPicture, IsAsLongAndHighAsTheCarFromItsSide) {
   EXPECT_NEAR(box.min().x(), -0.09 - 0.18, kTolerance_m);
   EXPECT_NEAR(box.max().x(), 0.45 - 0.18, kTolerance_m);
   EXPECT_NEAR(box.min().y(), 0.2 - (0.4176 + 0.020), kTolerance_m);  // top of the colour camera
-  EXPECT_NEAR(box.max().y(), 0.2, kTolerance_m);                     // the tyres' foot
+  EXPECT_NEAR(box.max().y(), 0.2, kTolerance_m);                     // bottom of the tyres
 }
 
 }  // namespace

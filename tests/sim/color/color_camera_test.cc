@@ -1,4 +1,4 @@
-// The whole colour camera in small worlds: where points appear, how it exposes, how motion blurs.
+// The whole colour camera in small worlds: projection of points, exposure, motion blur.
 #include "sim/color/color_camera.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ ColorCameraSheet NoiseFree(const CameraModel& camera) {
 
 ColorSettings Fixed(double exposure_s) { return {.exposure_s = exposure_s, .auto_exposure = false}; }
 
-// A MuJoCo model at its initial state; everything in it glows, nothing is lit.
+// A MuJoCo model at its initial state. Everything in it glows; there are no lights.
 struct SmallWorld {
   explicit SmallWorld(const std::string& body) {
     const std::string xml =
@@ -88,7 +88,7 @@ int Green(const ColorFrame& frame, int u, int v) {
   return frame.bgr[3 * (static_cast<std::size_t>(v) * frame.width + u) + 1];
 }
 
-// Centre of the green light within some pixels of a place.
+// Centroid of the green light within a few pixels of a position.
 Eigen::Vector2d Centroid(const ColorFrame& frame, const Eigen::Vector2d& about, int radius) {
   Eigen::Vector2d sum(0, 0);
   double light = 0.0;
@@ -138,7 +138,7 @@ TEST_F(ColorCameraTest, PutsMarkersWhereOpenCvsModelProjectsThem) {
       const Eigen::Vector2d pixel = PixelOf(model, point);
       worst_px = std::max(worst_px, (Centroid(frame, pixel, 11) - pixel).norm());
     }
-    // The raster, and off the axis a sphere's image that reaches outwards by under 0.1 px.
+    // Tolerance: the pixel raster, plus the outward stretch of a sphere's image off the axis, below 0.1 px.
     EXPECT_LT(worst_px, 0.3);
     EXPECT_EQ(frame.stamp, Time{7});
     EXPECT_EQ(frame.index, 3u);
@@ -161,8 +161,8 @@ TEST_F(ColorCameraTest, ExposesByTheFrameBefore) {
   EXPECT_EQ(Green(first, 48, 32), 51);
   EXPECT_NEAR(second.settings.exposure_s * second.settings.gain, 0.02 * std::sqrt(0.18 / Linear(51)), 1e-6);
   EXPECT_NEAR(Linear(Green(second, 48, 32)) / Linear(51), std::sqrt(0.18 / Linear(51)),
-              0.035);  // half a step of the code
-  // By hand it stays where it is put; automatic again, it starts from what it is given.
+              0.035);  // half a quantisation step
+  // With fixed exposure the settings stay; automatic again, it starts from the settings given.
   EXPECT_EQ(expose(Fixed(0.01)).settings, Fixed(0.01));
   EXPECT_EQ(expose(Fixed(0.01)).settings, Fixed(0.01));
   EXPECT_EQ(expose(DefaultSettings(sheet)).settings, DefaultSettings(sheet));
@@ -188,11 +188,12 @@ TEST_F(ColorCameraTest, BlursWhatItPassesAndOnlyIfAskedTo) {
     return std::count_if(light.begin(), light.end(), [](double l) { return l > 0.02 && l < 0.98; });
   };
   EXPECT_EQ(grey(sharp), 0);
-  EXPECT_NEAR(static_cast<double>(grey(blurred)), 2 * 16 * 7 / 8, 4.0);  // eight pictures make ramps of seven steps
+  EXPECT_NEAR(static_cast<double>(grey(blurred)), 2 * 16 * 7 / 8,
+              4.0);  // the mean of eight pictures has ramps of seven steps
 }
 
-// Seen from a body that moves as fast, a body that moves looks as if both stood; from one that stands, as it would look if
-// that one moved the other way.
+// Seen from a body that moves at the same velocity, a moving body looks as if both were at rest. Seen from a camera at
+// rest, it looks like a body at rest seen by a camera that moves the other way.
 TEST_F(ColorCameraTest, BlursWhatMovesAsWhatItPasses) {
   const SmallWorld world("<body pos='2 0 0'><freejoint/><geom type='box' size='.01 .1 .5' material='white'/></body>");
   const CameraModel model{.width = 320, .height = 32, .fx_px = 400.0, .fy_px = 400.0, .cx_px = 159.5, .cy_px = 15.5};
@@ -214,7 +215,7 @@ TEST_F(ColorCameraTest, BlursAboutTheMiddleOfTheExposureInLinearLight) {
   const SmallWorld world("<geom type='box' size='.01 .1 .5' material='white' pos='2 0 0'/>");
   const CameraModel model{.width = 320, .height = 32, .fx_px = 400.0, .fy_px = 400.0, .cx_px = 159.5, .cy_px = 15.5};
   ColorCamera camera(world.model, NoiseFree(model), Gl::kAuto, 1, true);
-  // Half exposed, so that full light is one half and clips nowhere; turning about the vertical axis.
+  // Half exposure, so that full light gives one half and nothing clips; the camera turns about the vertical axis.
   const auto expose = [&](const BodyMotion& motion) {
     auto shot = camera.Take(world.model, world.data, motion);
     return camera.Expose(*shot, Fixed(0.01), Time{0}, 0);

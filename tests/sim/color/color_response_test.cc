@@ -1,4 +1,5 @@
-// The colour sensor against the laws of photons: Poisson's variance, cos^4, the sRGB curve as its standard prints it.
+// Compares the colour sensor with known laws: Poisson variance of photons, cos^4 falloff, the sRGB curve of its
+// standard.
 #include "sim/color/color_response.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ using Picture = std::vector<std::uint8_t>;
 const CameraModel kCamera{.width = 200, .height = 120, .fx_px = 150.0, .fy_px = 240.0, .cx_px = 60.5, .cy_px = 80.25};
 const std::size_t kValues = 3 * 200 * 120;
 
-// Few electrons: noise of many steps.
+// Few electrons, so that the noise spans many steps.
 ColorCameraSheet Noisy() {
   return {.name = "test",
           .camera = kCamera,
@@ -50,7 +51,7 @@ struct Statistics {
   double mean = 0.0, variance = 0.0;
 };
 
-// Of the linear light a picture says there was.
+// Linear light according to the values of a picture.
 Statistics LinearStatistics(const Picture& bgr) {
   Statistics s;
   for (const int value : bgr) s.mean += LinearOf(value) / static_cast<double>(bgr.size());
@@ -74,8 +75,8 @@ TEST(ColorResponse, HasPoissonsVarianceAndTheReadNoise) {
       const double variance = (electrons + 25.0) / (400.0 * 400.0);
       const double five_errors = 5.0 * std::sqrt(variance / kValues);
       EXPECT_NEAR(got.mean, electrons / 400.0, five_errors + 2e-4)
-          << value << " " << exposure;  // and a step of the code
-      // 1.5 %: five standard errors are 2.6 % of a 72,000th; rounding to 8 bit adds up to 0.5 %.
+          << value << " " << exposure;  // plus a quantisation step
+      // Tolerance: five standard errors, plus 0.5 % for the rounding to 8 bits.
       EXPECT_NEAR(got.variance / variance, 1.0, 5.0 * std::sqrt(2.0 / kValues) + 0.005) << value << " " << exposure;
     }
 }

@@ -1,4 +1,4 @@
-// The remapping lens against the published formula of its distortion, inverted here in its own way.
+// Compares the lens with the published formula of its distortion, inverted here by another method.
 #include "sim/color/lens.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ Slope Distorted(const CameraModel& c, const Slope& s) {
           s.y * radial + c.p1 * (r2 + 2.0 * s.y * s.y) + 2.0 * c.p2 * s.x * s.y};
 }
 
-// By fixed-point iteration, which converges for lenses as mild as these.
+// Inverts it by fixed-point iteration, which converges for lenses as mild as these.
 Slope SlopeOfPixel(const CameraModel& c, double u, double v) {
   const Slope wanted{(u - c.cx_px) / c.fx_px, (v - c.cy_px) / c.fy_px};
   Slope s = wanted;
@@ -46,7 +46,7 @@ Slope SlopeOfPixel(const CameraModel& c, double u, double v) {
   return s;
 }
 
-// A pattern in the world, of a wave length of 30 pixels in x and 40 in y; slopes to 20 grey values a pixel.
+// A pattern in the world with wavelengths of 30 pixels in x and 40 in y; it changes by up to 20 grey values per pixel.
 double Pattern(const CameraModel& c, const Slope& s, int channel) {
   const double u = c.fx_px * s.x, v = c.fy_px * s.y, two_pi = 2.0 * std::numbers::pi;
   return 128.0 + 95.0 * std::sin(two_pi * u / 30.0 + channel) * std::sin(two_pi * v / 40.0 + 2.0 * channel);
@@ -80,7 +80,7 @@ TEST(Lens, GivesEachPixelWhatLiesAlongItsOwnRay) {
   }
 }
 
-TEST(Lens, WithoutDistortionIsNotThere) {
+TEST(Lens, ChangesNothingWithoutDistortion) {
   const CameraModel camera{.width = 5, .height = 3, .fx_px = 4.1, .fy_px = 4.2, .cx_px = 1.9, .cy_px = 1.1};
   const Lens lens(camera);
   EXPECT_EQ(lens.pinhole().width, 5);

@@ -22,7 +22,7 @@
 namespace merlin::sim {
 namespace {
 
-// Table 4.3 of the thesis: principal point off the middle, focal lengths that differ.
+// Table 4.3 of the thesis: principal point off the centre, two different focal lengths.
 const CameraModel kCcd{
     .width = 640, .height = 480, .fx_px = 780.037, .fy_px = 777.844, .cx_px = 353.244, .cy_px = 223.784};
 const CameraModel kSkew{.width = 200, .height = 120, .fx_px = 150.0, .fy_px = 240.0, .cx_px = 60.5, .cy_px = 80.25};
@@ -61,7 +61,7 @@ std::unique_ptr<Scene> RoomScene(const std::string& name) {
   return std::make_unique<Scene>(mj_loadXML(file.c_str(), nullptr, error, sizeof(error)));
 }
 
-// Level, at the given place and yaw: optical z ahead, x right, y down.
+// A level camera at this position and yaw: optical z ahead, x right, y down.
 Pose LevelCamera(const Eigen::Vector3d& position_m, double yaw_rad) {
   Pose T = Pose::Identity();
   T.linear().col(0) = Eigen::Vector3d(std::sin(yaw_rad), -std::cos(yaw_rad), 0.0);
@@ -94,7 +94,7 @@ struct Blob {
   int pixels = 0;
 };
 
-// Middle of the pixels whose channel (0 blue, 1 green, 2 red) is bright.
+// Centroid of the pixels whose channel (0 blue, 1 green, 2 red) is bright.
 Blob Bright(const Picture& bgr, const CameraModel& camera, int channel) {
   Blob blob;
   for (int v = 0; v < camera.height; ++v)
@@ -109,7 +109,7 @@ Blob Bright(const Picture& bgr, const CameraModel& camera, int channel) {
   return blob;
 }
 
-// Why this back end cannot draw here; nothing: it can.
+// Why this back end cannot draw here; none if it can.
 std::optional<std::string> WhyNot(Gl gl) {
   try {
     const auto scene = FromText("");
@@ -120,8 +120,8 @@ std::optional<std::string> WhyNot(Gl gl) {
   }
 }
 
-// Two processes, one for each back end: MuJoCo binds GL once a process. So this comes first, before GL is bound in
-// ours.
+// Uses two processes, one for each back end, because MuJoCo binds GL once per process. This test comes first, before GL
+// is bound in our own process.
 TEST(RendererBackEnds, EglAndOsmesaGiveTheSameBytes) {
   const std::size_t size = 640 * 480 * 3;
   auto* shared =
@@ -175,7 +175,7 @@ TEST_F(RendererTest, PutsPointsWhereThePinholeModelSays) {
     for (const Eigen::Vector2d& wanted :
          {Eigen::Vector2d(30, 30), Eigen::Vector2d(150, 25), Eigen::Vector2d(100.3, 60.7), Eigen::Vector2d(20, 100),
           Eigen::Vector2d(170, 95)}) {
-      // By hand: the point 2 m ahead whose pixel is the wanted one.
+      // Computed by hand: the point 2 m ahead that projects to this pixel.
       const double scale = camera.width / 200.0;
       const double u = wanted.x() * scale, v = wanted.y() * scale;
       const Eigen::Vector3d point_camera(2.0 * (u - camera.cx_px) / camera.fx_px,
@@ -185,7 +185,7 @@ TEST_F(RendererTest, PutsPointsWhereThePinholeModelSays) {
       Renderer renderer(scene->model, camera, Gl::kAuto);
       const Blob blob = Bright(Draw(renderer, *scene, T_world_camera, camera), camera, 1);
       ASSERT_GT(blob.pixels, 4);
-      // Off the axis a sphere's image reaches outwards: by under 0.1 px here; the rest is the pixel raster.
+      // Tolerance: the pixel raster, plus the outward stretch of a sphere's image off the axis, below 0.1 px here.
       EXPECT_NEAR(blob.u, u, 0.25);
       EXPECT_NEAR(blob.v, v, 0.25);
     }

@@ -1,4 +1,4 @@
-// The drive with the faults of a real one, in the world, against laws with known answers.
+// The drive with the faults of a real one, in the world, compared with laws whose answers are known.
 #include "sim/drive/drive_controller.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(DriveAtRest, StandsStillForAMinuteAfterItHasDriven) {
   const Pose start = world->T_world_base();
   StepFor(*world, 60.0);
   EXPECT_LT((world->T_world_base().translation() - start.translation()).norm(), 1e-3);
-  EXPECT_LE(std::abs(MotorVolts(*world)), 0.3);  // nothing, or one count put right
+  EXPECT_LE(std::abs(MotorVolts(*world)), 0.3);  // off, or a correction by one count
 }
 
 // Statics: a stalled motor draws V/R, and the wall takes its torque times the gear over the wheel's radius.
@@ -52,26 +52,26 @@ TEST(DriveAgainstAWall, DrawsTheStallCurrentAndPushesWithItsTorque) {
   const auto world =
       MakeWorld(Room(std::string(kPlane) + R"(<geom name="wall" type="box" size=".1 2 1" pos=".62 0 1"/>)"));
   Send(*world, 0.1, 0.0);
-  StepFor(*world, 0.95);  // at the wall since 0.75 s; at 1.1 s the integral has risen so far that the wheels slip
+  StepFor(*world, 0.95);  // at the wall since 0.75 s; from 1.1 s on the integral is so large that the wheels slip
   ASSERT_LT(std::abs(world->Speed_m_s()), 1e-3);
   const DriveState state = Read(*world);
   EXPECT_GT(state.current_a, 3.0);
   EXPECT_NEAR(state.current_a, MotorVolts(*world) / car.drivetrain.resistance_ohm, 0.02 * state.current_a);
   const std::unique_ptr<mjData, void (*)(mjData*)> now(mj_copyData(nullptr, world->model(), world->data()),
                                                        mj_deleteData);
-  mj_forward(world->model(), now.get());  // the forces of this very state
+  mj_forward(world->model(), now.get());  // the forces of exactly this state
   double push_n = 0.0;
   for (int i = 0; i < now->ncon; ++i) {
     mjtNum force[6];
     mj_contactForce(world->model(), now.get(), i, force);
-    if (std::abs(now->contact[i].frame[0]) > 0.9) push_n += force[0];  // along x: the wall's
+    if (std::abs(now->contact[i].frame[0]) > 0.9) push_n += force[0];  // along x: from the wall
   }
   const double expected_n =
       state.current_a * car.drivetrain.motor_constant_v_s * car.drivetrain.gear / car.wheel_radius_m;
   EXPECT_NEAR(push_n, expected_n, 0.05 * expected_n);
 }
 
-// Sliding on all four wheels the car changes its speed by mu g and no more, whatever the motor does.
+// With all four wheels sliding, the car's speed changes by mu g, whatever the motor does.
 TEST(DriveOnASlipperyFloor, AcceleratesAndBrakesWithMuG) {
   const TemporaryFile room("room.xml", Room(kPlane));
   WorldOptions options{.room = room.path(), .car = Merlin()};
@@ -85,7 +85,7 @@ TEST(DriveOnASlipperyFloor, AcceleratesAndBrakesWithMuG) {
   StepFor(world, 1.2);
   const double speed_m_s = world.Speed_m_s(), start_m = world.T_world_base().translation().x();
   EXPECT_NEAR(speed_m_s, 0.5, 0.01);
-  StepFor(world, 1.5);  // expired: the wheels lock
+  StepFor(world, 1.5);  // the command has expired: the wheels lock
   const double braking_m = world.T_world_base().translation().x() - start_m;
   EXPECT_NEAR(braking_m, speed_m_s * speed_m_s / (2.0 * mu_g_m_s2), 0.05 * braking_m);
 }
@@ -113,7 +113,7 @@ TEST(DriveEnergy, IsNeverMoreThanTheBatteryGave) {
     for (const Time end = world->Now() + FromSeconds(seconds); world->Now() < end;) {
       const double before_rad_s = MotorSpeed_rad_s(*world);
       world->Step();
-      // The mean speed of the step: torque acts on the way between.
+      // Mean speed over the step, because the torque acts on the way between the two states.
       const double speed_rad_s = 0.5 * (before_rad_s + MotorSpeed_rad_s(*world));
       const double current_a = (MotorVolts(*world) - car.drivetrain.motor_constant_v_s * speed_rad_s) / resistance_ohm;
       motor_j += MotorVolts(*world) * current_a * 0.002;
@@ -125,8 +125,8 @@ TEST(DriveEnergy, IsNeverMoreThanTheBatteryGave) {
   };
   drive(1.5, 2.0);
   const double driving_j = motor_j;
-  EXPECT_NEAR(motor_j - heat_j, KineticEnergy_j(*world), 0.05 * motor_j);  // nothing else takes any, straight ahead
-  const double ripple_j = fed_back_j;                                      // the speed loop's
+  EXPECT_NEAR(motor_j - heat_j, KineticEnergy_j(*world), 0.05 * motor_j);  // straight ahead nothing else uses energy
+  const double ripple_j = fed_back_j;                                      // from the ripple of the speed loop
   drive(0.0, 2.0);
   EXPECT_GT(fed_back_j - ripple_j, 1.0);           // braking gives some back,
   EXPECT_LT(motor_j, driving_j);                   // so that less is spent,
@@ -184,7 +184,7 @@ TEST(DriveSpeedLoop, HoldsTheMeanSpeedFromCountsAlone) {
     const double start_m = world->T_world_base().translation().x();
     for (int i = 0; i < 1000; ++i) {
       world->Step();
-      // A count in 10 ms is 7 mm/s: the loop sees no finer.
+      // The loop cannot resolve less than a count in 10 ms, which is 7 mm/s.
       EXPECT_NEAR(world->Speed_m_s(), speed_m_s, 0.01 * std::abs(speed_m_s) + 0.007);
     }
     EXPECT_NEAR((world->T_world_base().translation().x() - start_m) / 2.0, speed_m_s,
@@ -192,7 +192,8 @@ TEST(DriveSpeedLoop, HoldsTheMeanSpeedFromCountsAlone) {
   }
 }
 
-// Command a step between two pulses: nothing until the next, then the slew, then the angle held.
+// A step of the command between two pulses has no effect until the next pulse; then the servo slews and holds the
+// angle.
 TEST(DriveServo, StepResponseWaitsForThePulseAndRisesWithTheSlew) {
   DrivetrainConfig config{.steering_backlash_rad = 0.0};
   const auto world = EmptyWorld(config);
@@ -238,7 +239,7 @@ TEST(TrueCar, DrivesTheCirclesOfItsOwnWheelbaseAndOffset) {
   }
 }
 
-// A larger wheel goes farther for the same counts.
+// A larger wheel travels farther for the same counts.
 TEST(TrueCar, RollsOnItsOwnWheels) {
   for (const double factor : {0.97, 1.02}) {
     const auto world = EmptyWorld({.wheel_radius_factor = factor});

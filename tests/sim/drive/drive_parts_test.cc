@@ -1,4 +1,4 @@
-// Battery, servo pulses and encoder on their own, against formulas and counts one can check by hand.
+// Battery, servo pulses and encoder alone, compared with formulas and counts that one can check by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr double kMax_rad = 25.0 * pi / 180.0;
 
 TEST(Battery, SagsByItsResistanceTimesTheCurrent) {
   const Battery battery({.capacity_ah = 1.0, .charge = 0.5, .resistance_ohm = 0.2, .load_a = 2.0}, 12.0);
-  EXPECT_NEAR(battery.OpenCircuit_v(), 12.0 * 1.06, 1e-12);  // a curve's knot: 1.272 V a cell at half charge
+  EXPECT_NEAR(battery.OpenCircuit_v(), 12.0 * 1.06, 1e-12);  // a knot of the curve: 1.272 V per cell at half charge
   EXPECT_NEAR(battery.Terminal_v({}), battery.OpenCircuit_v() - 0.2 * 2.0, 1e-12);
   for (const double duty : {1.0, -1.0, 0.4})
     for (const double emf_v : {0.0, 3.0, -11.0}) {
@@ -46,10 +46,10 @@ TEST(Battery, LosesTheChargeThatIsDrawnAndIsThenEmptyForGood) {
     before_v = battery.OpenCircuit_v();
     battery.Feed({}, 60.0);
   }
-  battery.Feed({}, 1e-3);  // the sum of thirty shares need not be exactly one
+  battery.Feed({}, 1e-3);  // thirty shares need not add up to exactly one
   EXPECT_TRUE(battery.empty());
   EXPECT_EQ(battery.charge(), 0.0);
-  EXPECT_NEAR(battery.Terminal_v({}), 0.83 * 12.0, 1e-9);  // nothing draws any more
+  EXPECT_NEAR(battery.Terminal_v({}), 0.83 * 12.0, 1e-9);  // there is no load any more
 }
 
 TEST(Battery, NeitherOverfillsNorGivesNegativeVoltage) {
@@ -86,7 +86,7 @@ TEST(SteeringServo, TakesOnePulseEveryPeriodAndHoldsIt) {
   }
 }
 
-// To the left a microsecond is 25/400 deg, to the right 25/600.
+// A microsecond turns 25/400 deg to the left, but 25/600 deg to the right.
 TEST(SteeringServo, IgnoresWhatLiesInTheDeadBand) {
   for (const double sign : {1.0, -1.0}) {
     SteeringServo servo({.servo_dead_band_us = 5.0, .steering_backlash_rad = 0.0}, kMax_rad);
@@ -104,11 +104,11 @@ TEST(SteeringServo, LeavesTheLinkageBehindByHalfThePlayAndReportsItself) {
   const auto target_rad = [&](double command_rad) {
     const double linkage_rad = servo.LinkageTarget_rad(command_rad, now);
     now += std::chrono::milliseconds(20);
-    EXPECT_NEAR(servo.Report_rad(linkage_rad), command_rad, 1e-12);  // it knows nothing of play and offset
+    EXPECT_NEAR(servo.Report_rad(linkage_rad), command_rad, 1e-12);  // it measures neither backlash nor offset
     return linkage_rad - 0.05;
   };
   EXPECT_NEAR(target_rad(0.2), 0.19, 1e-12);
-  EXPECT_NEAR(target_rad(0.181), 0.19, 1e-12);  // back within the play: the wheels stay
+  EXPECT_NEAR(target_rad(0.181), 0.19, 1e-12);  // back within the backlash: the wheels stay
   EXPECT_NEAR(target_rad(0.15), 0.16, 1e-12);
   EXPECT_NEAR(target_rad(-0.2), -0.19, 1e-12);
 }
@@ -135,13 +135,13 @@ TEST(Encoder, RunsThroughThePlayWhenTheTorqueTurns) {
     return encoder.counts();
   };
   const std::int64_t half = std::llround(0.5 * kPlay_rad * kPerTurn / (2.0 * pi));
-  EXPECT_EQ(settle(0.1), half);  // the wheels stand all the while
+  EXPECT_EQ(settle(0.1), half);  // the wheels do not move in the meantime
   EXPECT_EQ(settle(-0.1), -half);
-  EXPECT_EQ(settle(0.01), -half);  // less than the bearings' friction
+  EXPECT_EQ(settle(0.01), -half);  // below the friction of the bearings
 }
 
-// A binomial: n edges, each lost with p. Within four of its standard deviations.
-TEST(Encoder, MissesTheShareThatItIsTold) {
+// The number of missed edges is binomial: n edges, each missed with probability p. Tolerance: four standard deviations.
+TEST(Encoder, MissesTheConfiguredShareOfCounts) {
   constexpr double kShare = 0.01;
   constexpr int kSteps = 20000, kEdges = 50;
   DrivetrainConfig config{.gear_backlash_rad = 0.0, .missed_counts = kShare};

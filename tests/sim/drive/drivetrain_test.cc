@@ -15,7 +15,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-// Path length and turn of the rear axle's middle over a time.
+// Path length and turn of the middle of the rear axle over a time.
 struct Travel {
   double path_m = 0.0;
   double turn_rad = 0.0;
@@ -38,11 +38,11 @@ double HingeAngle_rad(const World& world, const char* joint) {
   return world.data()->qpos[world.model()->jnt_qposadr[mj_name2id(world.model(), mjOBJ_JOINT, joint)]];
 }
 
-// Where a law of the mechanics is to hold to a fraction of a percent, the electronics are ideal; what they add is the
-// subject of drive_controller_test.cc.
+// Tests of mechanical laws to a fraction of a percent use ideal electronics; drive_controller_test.cc tests the
+// electronics.
 class CircleAtSteering : public testing::TestWithParam<double> {};
 
-// Tolerance: the tyre model's own error, .12 % as measured, and room for the steering polynomial's.
+// Tolerance: the measured error of the tyre model, 0.12 %, plus that of the steering polynomial.
 TEST_P(CircleAtSteering, HasAckermannRadiusAtTheRearAxle) {
   const double steering_rad = GetParam() * kDegree;
   const auto world = EmptyWorld(IdealDrivetrain());
@@ -122,7 +122,7 @@ TEST(Drivetrain, SteersNoFasterThanTheServo) {
   EXPECT_NEAR(Read(*world).steering_rad, goal_rad, 0.01 * goal_rad);
 }
 
-// cot(wheel) = cot(middle) -+ track / (2 wheelbase); tolerance: the quartic's fit, .008 deg, and the joints' give.
+// cot(wheel) = cot(middle) -+ track / (2 wheelbase); tolerance: the fit of the quartic, 0.008 deg, and soft joints.
 TEST(Drivetrain, FrontWheelsFollowAckermann) {
   const CarDescription car = Merlin();
   const auto world = EmptyWorld(IdealDrivetrain());
@@ -143,7 +143,7 @@ struct Expiry {
   double steering_rad;
 };
 
-// The time from now until the car stands for good, watched for 3 s.
+// Time from now until the car stands still for good; observed for 3 s.
 double TimeToStand_s(World& world) {
   const Time start = world.Now();
   Time stands = start;
@@ -193,7 +193,7 @@ TEST(Drivetrain, ExpiresAtOnceWhenACommandIsNotFinite) {
   }
 }
 
-TEST(Drivetrain, HoldsForNoTimeAtAllOrForEver) {
+TEST(Drivetrain, KeepsACommandForNoTimeOrForEver) {
   const auto world = EmptyWorld();
   EXPECT_TRUE(Read(*world).expired);  // no command yet
   Send(*world, 1.0, 0.0, 0.0);
@@ -220,7 +220,7 @@ TEST(Drivetrain, EncoderCountsTheStraightPath) {
   }
 }
 
-// In a turn each wheel's path is its distance from the centre of the circle times the turn.
+// In a turn, the path of each wheel is its distance from the centre of the circle times the turn angle.
 TEST(Drivetrain, EncoderCountsTheFourWheelsMeanInATurn) {
   const CarDescription car = Merlin();
   for (const double degrees : {-10.0, 10.0, 25.0}) {

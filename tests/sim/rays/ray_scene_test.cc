@@ -60,7 +60,7 @@ RayHit CastOne(const RayScene& scene, const Eigen::Vector3d& origin, const Eigen
   return hits[0];
 }
 
-// Every shape, turned and shifted, two of them on bodies that move; planes finite, infinite and tilted.
+// All shapes, rotated and shifted, two of them on moving bodies; planes finite, infinite and tilted.
 constexpr char kShapes[] = R"(
 <mujoco>
   <compiler angle="radian"/>
@@ -94,7 +94,7 @@ constexpr char kShapes[] = R"(
   </worldbody>
 </mujoco>)";
 
-// Where the origins lie: around the finite geoms, from just above the ground to below the walls' upper edges.
+// Box of ray origins: around the finite geoms, from just above the ground to below the upper edges of the walls.
 Eigen::AlignedBox3d Surroundings(const Mujoco& world) {
   Eigen::AlignedBox3d box;
   for (int g = 0; g < world.model->ngeom; ++g) {
@@ -128,8 +128,8 @@ OracleHit Oracle(const Mujoco& world, const Eigen::Vector3d& origin, const Eigen
   return hit;
 }
 
-// Whether a surface begins, ends or folds within 1 mrad of the ray: one of 16 rays on that cone meets another geom, or
-// the same one off the plane that the ray has met.
+// Whether a surface begins, ends or folds within 1 mrad of the ray: one of 16 rays on that cone hits another geom, or
+// the same geom off the plane that the ray hits.
 bool IsNearEdge(const Mujoco& world, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   const OracleHit middle = Oracle(world, origin, direction);
   const Eigen::Vector3d u = direction.unitOrthogonal(), v = direction.cross(u);
@@ -149,7 +149,7 @@ bool IsFlat(const Mujoco& world, int geom) {
   return type == mjGEOM_PLANE || type == mjGEOM_BOX || type == mjGEOM_MESH;
 }
 
-// 100 origins with 100 rays each, anywhere (inside of geoms, too), any direction.
+// 100 origins with 100 rays each, at random positions (also inside geoms) in random directions.
 void ExpectAgreement(const Mujoco& world, const RayScene& scene, const std::string& name) {
   constexpr int kOrigins = 100, kRays = 100;
   const Eigen::AlignedBox3d box = Surroundings(world);
@@ -157,7 +157,7 @@ void ExpectAgreement(const Mujoco& world, const RayScene& scene, const std::stri
   for (int o = 0; o < kOrigins; ++o) {
     Random random(1, Sensor::kDepth, static_cast<std::uint64_t>(o));
     const Eigen::Array3d share(random.Uniform(), random.Uniform(), random.Uniform());
-    // What Embree gets is what the oracle gets: numbers that float holds.
+    // Only numbers that a float can hold, so that Embree and the oracle get the same rays.
     const Eigen::Vector3d origin =
         (box.min().array() + share * box.sizes().array()).matrix().cast<float>().cast<double>();
     std::vector<Ray> rays;
@@ -191,7 +191,7 @@ void ExpectAgreement(const Mujoco& world, const RayScene& scene, const std::stri
         }
       } else {
         ++curved;
-        // A curved geom's rim is an edge like any other.
+        // The rim of a curved geom is an edge as well.
         if (difference_m > 2e-3) {
           EXPECT_TRUE(IsNearEdge(world, origin, direction) && hits[i].geom != geoms[i])
               << what << ": off by " << difference_m;
@@ -209,7 +209,7 @@ void ExpectAgreement(const Mujoco& world, const RayScene& scene, const std::stri
     }
   }
   EXPECT_GE(flat_exact, 0.999 * flat) << name;
-  // In a room half of the rays meet something at least; over a bare floor those that go down, but for the flattest.
+  // In a room at least half of the rays hit something; over a bare floor, those that point down, except the flattest.
   const bool bare = std::all_of(world.model->geom_type, world.model->geom_type + world.model->ngeom,
                                 [](int type) { return type == mjGEOM_PLANE; });
   EXPECT_GE(flat + curved, (bare ? 0.45 : 0.5) * kOrigins * kRays) << name;

@@ -1,4 +1,4 @@
-// How the time-of-flight camera sees what moves by itself.
+// How the time-of-flight camera measures bodies that move by themselves.
 #include <gtest/gtest.h>
 
 #include "sim/actors/actors.h"
@@ -9,15 +9,16 @@
 namespace merlin::sim {
 namespace {
 
-// The law of four phase images taken one after the other: the range at mid-frame, plus half the distance that it moves in a sub-frame, times the cosine of twice the
-// phase. A wall far away, where the light does not change while it moves; the camera stands, the world steps.
+// The law of four phase images taken one after the other: the range at mid-frame, plus half the distance moved in a
+// sub-frame times the cosine of twice the phase. The wall is so far away that its light does not change while it moves;
+// the camera is at rest.
 TEST(TofActors, AWallAtOneMetreASecondErrsByHalfItsMotionInASubFrameTimesCos2Phi) {
   constexpr double kUnambiguous_m = 299792458.0 / (2 * 20e6), kSpeed_m_s = 1.0;
   const DepthSettings settings{.integration_s = 4e-3};
   const double step_m = kSpeed_m_s * (4e-3 + 1e-3);
   DepthCameraSheet sheet = Sheet3kS();
   sheet.camera = {.width = 1, .height = 1, .fx_px = 100, .fy_px = 100, .cx_px = 0, .cy_px = 0};
-  const double far_m = 11.0 * kUnambiguous_m;  // of its front; its middle is half a metre behind
+  const double far_m = 11.0 * kUnambiguous_m;  // of the wall's front; its middle is half a metre behind it
   const TemporaryFile room("room.xml", Room(kPlane));
   for (const double sign : {1.0, -1.0}) {
     World world({.room = room.path(),
@@ -51,8 +52,8 @@ TEST(TofActors, AWallAtOneMetreASecondErrsByHalfItsMotionInASubFrameTimesCos2Phi
   }
 }
 
-// Every sub-ray of every sub-frame traced on its own, and its phasor added in double precision: what is taken from planes
-// without a ray must not show. Actors stand where they are at a sub-frame's middle.
+// Traces every sub-ray of every sub-frame and adds the phasors in double precision. It must make no difference that the
+// camera computes ranges of known planes without tracing. Actors are at their poses at the middle of the sub-frame.
 TEST(TofActors, SumsWhatEverySubRayMeetsWhereActorsThenAre) {
   const std::filesystem::path models = std::filesystem::path(MERLIN_SOURCE_DIR) / "models";
   const std::vector<ActorConfig> actors{

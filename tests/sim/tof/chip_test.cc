@@ -108,7 +108,8 @@ TEST(TofSaturation, OfOneTapFlagsItsSubFrameOnly) {
 }
 
 TEST(TofSaturation, ReachesFartherWithLongerIntegration) {
-  // Where (1 + C max(|cos|, |sin|)) K rho T / (2 d^2) = 1.5e6: sqrt of T but for the phase's share.
+  // The distance where (1 + C max(|cos|, |sin|)) K rho T / (2 d^2) = 1.5e6: proportional to sqrt(T) apart from the
+  // phase.
   const Chip chip(Pmd3k(), {}, Only(&TofEffects::saturation));
   double last_m = 0.0;
   for (const double integration_s : {1e-4, 3e-4, 1e-3, 2e-3, 5e-3}) {
@@ -130,14 +131,14 @@ TEST(TofSaturation, LeavesTapsAloneWhenSwitchedOff) {
   EXPECT_FALSE(taps[0].saturated);
 }
 
-// A facing wall of albedo 0.5, 1 m away, 1 ms, in full sun: 1e6 e of the lamp, and of 80 W/m2 against 2 W/sr 40 times
-// that.
+// A facing wall of albedo 0.5 at 1 m, 1 ms, in full sun: 1e6 e from the lamp, and from the sun (80 W/m2 against 2 W/sr)
+// 40 times that.
 const Light kSunlit{.signal_e = 1e6, .phase_rad = 2.0 * std::numbers::pi / kPeriod_m, .background_e = 4e7};
 
 TEST(TofSbi, KeepsAPixelInFullSunAliveAndRightInTheMean) {
   const TofEffects with = Only(&TofEffects::noise, &TofEffects::saturation, &TofEffects::sbi);
   const Chip chip(Pmd3k(), {}, with);
-  // Taken away: all that the emptier tap holds above half a full well; each electron of it leaves 1.5 e2 of variance.
+  // SBI removes what the emptier tap holds above half a full well; each removed electron adds 1.5 e2 of variance.
   double variance_of_i = 0.0, variance_of_q = 0.0;
   for (int k = 0; k < 4; ++k) {
     const double m_e = std::abs(kSunlit.At(k).correlation_e), taken_e = (4.1e7 - m_e) / 2.0 - 0.75e6;
@@ -164,9 +165,9 @@ TEST(TofSbi, MakesTheDifferenceBetweenDeadAndAlive) {
   for (const DepthCameraSheet& sheet : {Pmd3k(), Pmd19k(), CamCube()}) {
     const FourTaps full = ExposeFour(Chip(sheet, {}, without), kSunlit);
     EXPECT_TRUE(std::ranges::all_of(full, &Taps::saturated));
-    EXPECT_EQ(DecodePhase(full.data()).amplitude_e, 0.0);  // both taps are full: nothing is left
+    EXPECT_EQ(DecodePhase(full.data()).amplitude_e, 0.0);  // both taps are full: no signal is left
   }
-  // The 160x120 chip has none: its name alone does not help. A tenth of the sun fills its wells, too.
+  // The 160x120 chip has no SBI, so the effect does nothing there. A tenth of the sun fills its wells as well.
   EXPECT_TRUE(std::ranges::all_of(ExposeFour(Chip(Pmd19k(), {}, with), kSunlit), &Taps::saturated));
   const FourTaps patch = ExposeFour(Chip(Pmd19k(), {}, with), {.signal_e = 1.65e5, .background_e = 6.6e5});
   EXPECT_TRUE(std::ranges::all_of(patch, &Taps::saturated));
@@ -180,7 +181,7 @@ TEST(TofSbi, SleepsBelowItsOnsetAndGivesUpAboveItsMost) {
   const auto expose = [&](double total_e, double m_e) { return chip.Expose({total_e, m_e}, {}, 1e-3, random); };
   EXPECT_EQ(expose(1.5e6, 0.0).suppressed_e, 0.0);  // 0.75e6 each: half full
   EXPECT_NEAR(expose(1.6e6, 0.0).suppressed_e, 0.05e6, 1e-6);
-  EXPECT_EQ(expose(1.6e6, 0.1e6).suppressed_e, 0.0);  // the emptier one decides
+  EXPECT_EQ(expose(1.6e6, 0.1e6).suppressed_e, 0.0);  // the emptier tap decides
   EXPECT_NEAR(expose(1e9, 0.0).suppressed_e, 75e6, 1e-6);
   const Taps taps = expose(4e6, 0.3e6);
   EXPECT_NEAR(taps.a_e - taps.b_e, 0.3e6, 1e-6);
@@ -203,7 +204,7 @@ TEST(TofResponse, MakesAnErrorOfFourfoldPhaseThatGrowsWithAmplitude) {
       const double error_rad = PhaseError_rad(ReadingOf(chip, light).phase_rad, light.phase_rad);
       EXPECT_NEAR(error_rad, -share * std::sin(4.0 * light.phase_rad), 0.01 * std::abs(share) + 1e-12);
       peak_rad = std::max(peak_rad, std::abs(error_rad));
-      // Not so if the response bent with the square: A^2 - B^2 = N D is D again.
+      // A quadratic response would cause no such error, because A^2 - B^2 = N D is proportional to D.
       FourTaps bent = ExposeFour(Chip(Pmd3k(), {}, kIdealTof), light);
       for (Taps& taps : bent)
         for (double* tap : {&taps.a_e, &taps.b_e}) *tap -= 0.03 * *tap * *tap / 1.5e6;
@@ -239,7 +240,8 @@ TEST(TofChip, HasAHotPixelAlwaysFullWhetherOrNotItSuppressesBackground) {
 }
 
 TEST(TofChip, CancelsGainAndOffsetOfTheTapsForAPixelAtRest) {
-  // A (1 + g) - B (1 - g) = D + g N: the same in all four, gone from D_0 - D_2 and D_3 - D_1; so is the offset, at once.
+  // A (1 + g) - B (1 - g) = D + g N. The term g N is the same in all four sub-frames and cancels in D_0 - D_2 and D_3 -
+  // D_1; the offset cancels within each sub-frame.
   const Chip chip(Pmd3k(), {}, kIdealTof);
   for (const double phase_rad : {0.0, 0.7, 3.0, 6.2}) {
     const Light light{.signal_e = 2e5, .phase_rad = phase_rad, .background_e = 3e5};
@@ -313,7 +315,7 @@ TEST(TofConsistency, BreaksForSubFramesOfTwoDepths) {
   // By hand, D in 1e5 e: near 3.01 -3.34 -3.01 3.34, far -0.33 -0.01 0.33 0.01; misses of the sums, as shares of the
   // modulation that is read: 1.25 after one sub-frame, 0.78 after two, 0.48 after three.
   const FourTaps far = ExposeFour(chip, WallLight(Pmd3k(), 0.5, 1e-3, 3.7), 1);
-  for (int edge = 1; edge < 4; ++edge) {  // the near one leaves after so many sub-frames
+  for (int edge = 1; edge < 4; ++edge) {  // the near surface leaves after this many sub-frames
     FourTaps taps = far;
     std::copy_n(near.begin(), edge, taps.begin());
     EXPECT_TRUE(Inconsistent(taps.data(), DecodePhase(taps.data()).amplitude_e, 200.0)) << edge;

@@ -14,13 +14,13 @@ namespace {
 
 const TofEffects kNoise = Only(&TofEffects::noise);
 
-// The small-error law, written out: c / (4 sqrt(2) pi f) sqrt(N_s + N_b + 2 r^2) / (C N_s).
+// The small-error law: c / (4 sqrt(2) pi f) sqrt(N_s + N_b + 2 r^2) / (C N_s).
 double Law_m(double signal_e, double background_e, double contrast, double read_e, double frequency_hz = 20e6) {
   return 299792458.0 / (4.0 * std::sqrt(2.0) * std::numbers::pi * frequency_hz) *
          std::sqrt(signal_e + background_e + 2.0 * read_e * read_e) / (contrast * signal_e);
 }
 
-// Range errors [m] at 20 MHz, the shorter way round.
+// Range errors [m] at 20 MHz, wrapped to half a period at most.
 std::vector<double> RangeErrors(const Chip& chip, const Light& light, int n = 20000, double integration_s = 1e-3) {
   std::vector<double> errors;
   for (int i = 0; i < n; ++i) {
@@ -41,7 +41,7 @@ Statistics Of(const std::vector<double>& values) {
   return {sum / n, std::sqrt(squares / n - sum / n * (sum / n))};
 }
 
-TEST(TofNoise, IsTheLawsThatIsPublishedForThisPixel) {
+TEST(TofNoise, FollowsThePublishedLawForThisPixel) {
   EXPECT_NEAR(RangeSigma_m(9.2e4, 0.0, 0.5, 0.0, 20e6), 5.56e-3, 0.01e-3);  // 0.844 m / (0.5 sqrt(9.2e4))
   for (const double signal_e : {50.0, 1e4, 3e6})
     for (const double background_e : {0.0, 1e3, 4e7})
@@ -55,7 +55,7 @@ struct Conditions {
 };
 
 TEST(TofNoise, FollowsTheLawOverFiveDecadesOfSignal) {
-  // Neither background, in proportion or fixed, nor read noise; each; all.
+  // Without background and read noise; with background in proportion, fixed background or read noise; with all of them.
   for (const Conditions& with : {Conditions{0, 0, 0}, {3, 0, 0}, {0, 2000, 0}, {0, 0, 20}, {0.5, 500, 10}}) {
     DepthCameraSheet sheet = Pmd3k();
     sheet.read_noise_e = with.read_e;
@@ -76,7 +76,7 @@ TEST(TofNoise, FollowsTheLawOverFiveDecadesOfSignal) {
   }
 }
 
-// Predicted sigma [mm] for three cameras, of walls 0.5, 1, 2, 3, 4, 5, 7 m away, and the value of half their last digit.
+// Predicted sigma [mm] for three cameras and walls at 0.5, 1, 2, 3, 4, 5, 7 m, and half of their last digit.
 constexpr double kSaturated_mm = -1.0;
 constexpr double kRanges_m[7] = {0.5, 1, 2, 3, 4, 5, 7};
 struct Prediction {
@@ -111,7 +111,7 @@ TEST(TofNoise, HasThePredictedSigmaInEveryCellBelow200mm) {
       ++cells;
     }
   }
-  EXPECT_EQ(cells, 43);  // 49, 5 of them saturated, 1 above 200 mm
+  EXPECT_EQ(cells, 43);  // of 49, 5 saturate and 1 is above 200 mm
 }
 
 TEST(TofSaturation, IsFlaggedInTheCellsPredictedSaturatedAndInNoOther) {
@@ -127,7 +127,7 @@ TEST(TofSaturation, IsFlaggedInTheCellsPredictedSaturatedAndInNoOther) {
 }
 
 TEST(TofNoise, HardlyGrowsByTheDefaultDarkCurrent) {
-  // Against the read noise of the quietest camera, in the longest of its usual sub-frames.
+  // Compared with the read noise of the quietest camera, in the longest of its usual sub-frames.
   const double dark_e = DepthCameraErrors{}.dark_e_per_us * 5000.0;
   EXPECT_LT(std::sqrt(1.0 + dark_e / (2.0 * 100.0 * 100.0)) - 1.0, 0.01);
 }
@@ -147,7 +147,7 @@ TEST(TofNoise, CountsDarkCurrentAsBackground) {
 }
 
 TEST(TofNoise, GainsTheQuantisationTermFromTheConverter) {
-  // 12 bits, black at 700: a count is 1.5e6 / 3395 = 441.8 e, twice the tap's own noise, which so smooths its steps.
+  // 12 bits with black at 700: a count is 1.5e6 / 3395 = 441.8 e, twice a tap's own noise, which so smooths the steps.
   DepthCameraErrors errors;
   errors.adc_bits = 12.0, errors.adc_black_dn = 700.0;
   const TofEffects with_adc = Only(&TofEffects::noise, &TofEffects::adc);
@@ -181,7 +181,7 @@ TEST(TofNoise, PredictsTheVarianceOfATapsDifference) {
   EXPECT_EQ(mean.DifferenceVariance_e2(ExposeFour(mean, {2e4, 0.7})[0], 1e-3), 0.0);
 }
 
-// Slope of log sigma over log x by least squares through these.
+// Least-squares slope of log sigma over log x.
 double Slope(const std::vector<double>& at, const std::function<double(double)>& sigma_m) {
   double sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
   for (const double value : at) {
@@ -246,7 +246,7 @@ TEST(TofNoise, HasTheOutlierShareOfLowSignals) {
 }
 
 TEST(TofNoise, CountsSingleElectronsOfDimTaps) {
-  // Poisson's distribution itself: P(k) = m^k e^-m / k!, for each count; so its mean and variance, too.
+  // Poisson's distribution P(k) = m^k e^-m / k!, compared count by count, and so its mean and variance as well.
   DepthCameraSheet sheet = Pmd3k();
   sheet.read_noise_e = 0.0;
   DepthCameraErrors errors;
@@ -293,7 +293,7 @@ TEST(TofNoise, IsGaussianInAPixel) {
     std::vector<double> errors_m = RangeErrors(chip, {.signal_e = signal_e, .phase_rad = 5.5});
     std::ranges::sort(errors_m);
     const double law_m = Law_m(signal_e, 0.0, 0.45, 200.0), n = static_cast<double>(errors_m.size());
-    double distance = 0.0;  // Kolmogorov and Smirnov's
+    double distance = 0.0;  // Kolmogorov-Smirnov distance
     for (std::size_t i = 0; i < errors_m.size(); ++i) {
       const double below = 0.5 * std::erfc(-errors_m[i] / law_m / std::numbers::sqrt2);
       distance = std::max({distance, below - static_cast<double>(i) / n, static_cast<double>(i + 1) / n - below});

@@ -14,9 +14,9 @@ namespace {
 
 using Counter = std::array<std::uint32_t, 4>;
 
-// Box and Muller's own formula in double, on the same words.
+// Box and Muller's formula in double precision, on the same random words.
 TEST(NormalRow, IsBoxAndMullerOfThePixelsOwnBlock) {
-  constexpr std::uint32_t kFirst = 0xFFFFFF00;  // the pixels' numbers wrap
+  constexpr std::uint32_t kFirst = 0xFFFFFF00;  // the pixel numbers wrap around
   NormalRow row(1003);
   for (const std::uint32_t draw : {0u, 1u}) {
     row.Draw(0x1234567890ull, Sensor::kDepth, (std::uint64_t{3} << 32) + 9, kFirst, 7, draw);

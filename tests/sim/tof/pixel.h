@@ -1,4 +1,4 @@
-// One pixel of a time-of-flight camera by formula: its light, its taps, its readings. For the tests of the chip.
+// Formulas for one pixel of a time-of-flight camera, its light, taps and readings, for tests of the chip.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 
 namespace merlin::sim {
 
-constexpr double kPeriod_m = 299792458.0 / 40e6;  // of 20 MHz
+constexpr double kPeriod_m = 299792458.0 / 40e6;  // at 20 MHz
 
-// Of 160x120 pixels, which cannot suppress background light.
+// A camera of 160x120 pixels, which cannot suppress background light.
 inline DepthCameraSheet Pmd19k() {
   DepthCameraSheet sheet = Pmd3k();
   sheet.camera.width = 160, sheet.camera.height = 120;
@@ -26,7 +26,7 @@ inline DepthCameraSheet Pmd19k() {
   return sheet;
 }
 
-// Of 200x200 pixels.
+// A camera of 200x200 pixels.
 inline DepthCameraSheet CamCube() {
   DepthCameraSheet sheet = Pmd3k();
   sheet.camera.width = sheet.camera.height = 200;
@@ -34,7 +34,7 @@ inline DepthCameraSheet CamCube() {
   return sheet;
 }
 
-// None but what `on` switches on.
+// No effects except those in `on`.
 template <class... Effect>
 TofEffects Only(Effect... on) {
   TofEffects effects = kIdealTof;
@@ -42,7 +42,7 @@ TofEffects Only(Effect... on) {
   return effects;
 }
 
-// A pixel's light: signal and background of both taps in a sub-frame, contrast, phase.
+// Light of a pixel in a sub-frame: signal and background of both taps together, contrast, phase.
 struct Light {
   double signal_e = 0.0, phase_rad = 0.0;
   double background_e = 0.0, contrast = 0.45;
@@ -71,7 +71,7 @@ inline FourTaps ExposeFour(const Chip& chip, const Light& light, std::uint64_t f
   return taps;
 }
 
-// The shorter way round from one phase to another.
+// Phase difference, wrapped to half a turn at most.
 inline double PhaseError_rad(double phase_rad, double true_rad) {
   return std::remainder(phase_rad - true_rad, 2.0 * std::numbers::pi);
 }

@@ -1,4 +1,4 @@
-// The camera in our own rooms, against rays traced one by one, brute force and what the experiments showed.
+// The camera in our rooms, compared with rays traced one by one, brute force, and the results of the experiments.
 #include "sim/world/room.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ struct RoomView {
   RayScene scene;
 };
 
-// Every sub-ray of every sub-frame traced on its own, at its own instant, and its phasor added in double precision.
+// Traces every sub-ray of every sub-frame at its own instant, and adds the phasors in double precision.
 TEST(TofCamera, SumsWhatEverySubRayMeetsAtItsOwnInstant) {
   RoomView room("corridor_26x21");
   TofView view = room.At(-3.0, -9.3, 0.35, 0.2);
@@ -116,7 +116,7 @@ TEST(TofTruth, IsWhatTheIdealCameraReadsAndWhereItIs) {
     for (const float range_m : bias.range_m)
       largest_m[bias.effect] = std::max<double>(largest_m[bias.effect], std::abs(range_m));
   EXPECT_GT(largest_m.at("wiggling"), 0.003);
-  EXPECT_LT(largest_m.at("wiggling"), 0.008);  // what the calibration leaves
+  EXPECT_LT(largest_m.at("wiggling"), 0.008);  // what remains after calibration
   EXPECT_GT(largest_m.at("flying"), 0.05);
   EXPECT_FALSE(largest_m.contains("noise"));
 }
@@ -144,8 +144,8 @@ TEST(TofTruth, PredictsTheSpreadOfRepeatedFrames) {
   EXPECT_NEAR(ratio_sum / pixels, 1.0, 0.03);
 }
 
-// 95th percentile of |range - truth| (wrapped the shortest way) over the pixels that a user would use, for the cameras that
-// look towards these yaws from the room's middle.
+// 95th percentile of |range - truth| (wrapped to half a period at most) over the pixels that a user would use, for
+// cameras in the middle of the room that look along these yaws.
 double ErrorP95_m(RoomView& room, const std::vector<double>& yaws_deg) {
   const DepthCameraSheet sheet = ReadDepthCameraSheet(kModels / "cameras/pmd_3k_s.yaml");
   const DepthCameraErrors errors = ReadDepthCameraErrors(kModels / "cameras/pmd_3k_s.yaml");

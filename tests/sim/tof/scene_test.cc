@@ -1,4 +1,4 @@
-// What a camera makes of simple scenes whose phases can be added up by hand.
+// Simple scenes whose phases can be added up by hand.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,8 +64,8 @@ TEST(TofEnergy, TwiceTheLightDoublesAmplitudeAndKeepsPhase) {
   }
 }
 
-// Many periods away the light does not change while the wall moves: the phase alone does.
-TEST(TofMotion, ErrsAxiallyByHalfTheWayOfASubFrameTimesCos2Phi) {
+// Many periods away the light stays constant while the wall moves, and only the phase changes.
+TEST(TofMotion, ErrsAxiallyByHalfTheMotionInASubFrameTimesCos2Phi) {
   constexpr double kSpeed_m_s = 2.0;
   const DepthSettings settings{.integration_s = 4e-3};
   const double step_m = kSpeed_m_s * (4e-3 + 1e-3);
@@ -84,8 +84,8 @@ TEST(TofMotion, ErrsAxiallyByHalfTheWayOfASubFrameTimesCos2Phi) {
   }
 }
 
-// Near by, the light of the four sub-frames differs, too: the four taps written out, with N ~ 1 / d^2 and the mean over the
-// integration.
+// Nearby, the light of the four sub-frames differs as well. The four taps are written out, with N ~ 1 / d^2 and
+// averaged over the integration.
 TEST(TofMotion, AddsTheChangeOfLightNearBy) {
   const DepthSettings settings{.integration_s = 4e-3};
   DepthCameraSheet sheet = Sheet3kS();
@@ -107,7 +107,7 @@ TEST(TofMotion, AddsTheChangeOfLightNearBy) {
   }
 }
 
-// Sideways past an edge: the sub-frames see different depths, and the flag says so.
+// The camera moves sideways past an edge. The sub-frames see different depths, and the flag reports it.
 TEST(TofMotion, FlagsPixelsThatAnEdgePasses) {
   Stage stage({Wall(4.0, 0.8), {{1.05, -5.0, 0}, {0.1, 10.0, 10.0}, {.nir_albedo = 0.8}}});
   const auto flagged = [&stage] {
@@ -193,7 +193,7 @@ TEST(TofIntensity, DarkSquaresReadNearerThanBrightOnes) {
 }
 
 // Thesis figure 4.13: at 100 us a near book is usable and a far chair is not; at 5 ms it is the other way round.
-TEST(TofIntegration, ShowsTheBookOrTheChair) {
+TEST(TofIntegration, ExposesEitherTheNearBookOrTheFarChair) {
   const Stage book({Wall(0.6, 0.7)}), chair({Wall(3.8, 0.4)});
   const auto sigma_m = [](const Stage& stage, double integration_s) {
     const TofCamera camera(Sheet3kS(), {}, ParseTofEffects("noise,saturation,adc"), 1);

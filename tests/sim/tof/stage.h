@@ -1,4 +1,4 @@
-// A few boxes before a camera at the origin that looks along x, z up.
+// A few boxes in front of a camera at the origin that looks along x, with z up.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace merlin::sim {
 
 constexpr double kPi = std::numbers::pi;
 
-// A 64x48 PMD camera of 40x30 degrees, without noise in its numbers but for what a test asks for.
+// A 64x48 PMD camera with a field of view of 40x30 degrees and no noise; a test adds what it needs.
 inline DepthCameraSheet Sheet3kS() {
   DepthCameraSheet sheet;
   sheet.name = "stage";
@@ -39,7 +39,7 @@ inline DepthCameraSheet Sheet3kS() {
   return sheet;
 }
 
-// What a test puts into the world: a box of full edges size_m, turned about the vertical, of its own material.
+// A box that a test puts into the world: full dimensions size_m, turned about the vertical, with a material of its own.
 struct StageBox {
   Eigen::Vector3d middle_m, size_m;
   Material material{.nir_albedo = 0.5};
@@ -79,14 +79,14 @@ class Stage {
   BodyMotion camera;
 };
 
-// A wall square ahead, its near face at x_m.
+// A facing wall with its near face at x_m.
 inline StageBox Wall(double x_m, double albedo = 0.5, double size_m = 60.0) {
   return {{x_m + 0.5, 0, 0}, {1, size_m, size_m}, {.nir_albedo = albedo}};
 }
 
 inline double WaveNumber(double frequency_hz) { return 4.0 * kPi * frequency_hz / 299792458.0; }
 
-// The range that phases of these electrons and ranges add up to, nearest to about_m: the phasor sum, by itself.
+// Range of the phasor sum of these electrons and ranges, in the period nearest to about_m. Computed independently.
 struct Way {
   double electrons, range_m;
 };

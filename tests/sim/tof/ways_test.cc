@@ -1,4 +1,4 @@
-// Light that takes other ways than straight there and back: bounces, panes, mirrors, scatter, boards beside the lens.
+// Light on other paths than straight there and back: bounces, panes, mirrors, scatter, lamp boards beside the lens.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,11 +9,11 @@
 namespace merlin::sim {
 namespace {
 
-// Two walls that meet at a right angle, the corner corner_m ahead.
+// Two walls at a right angle, with their corner corner_m ahead.
 Stage Corner(double corner_m, double albedo) {
   const double s = std::sqrt(0.5);
   const auto wall = [&](double side) -> StageBox {
-    // Along (-1, side) from the corner, one metre thick to the outside.
+    // From the corner along (-1, side), one metre thick towards the outside.
     const Eigen::Vector3d along(-s, side * s, 0), out(s, side * s, 0);
     return {Eigen::Vector3d(corner_m, 0, 0) + 15.0 * along + 0.5 * out,
             {30.0 + 2.0, 1.0, 30.0},
@@ -28,7 +28,7 @@ struct WallPoint {
   double range_m;
 };
 
-// Where the ray through the slopes (x right, y down) meets the corner: both walls are x + |y| = corner.
+// Where the ray with these slopes (x right, y down) meets the walls, which are at x + |y| = corner.
 WallPoint MeetCorner(double corner_m, double slope_x, double slope_y) {
   const Eigen::Vector3d direction = Eigen::Vector3d(1.0, -slope_x, -slope_y).normalized();
   const double range_m = corner_m / (direction.x() + std::abs(direction.y()));
@@ -36,7 +36,8 @@ WallPoint MeetCorner(double corner_m, double slope_x, double slope_y) {
   return {range_m * direction, {-s, direction.y() > 0 ? -s : s, 0.0}, range_m};
 }
 
-// One bounce of an even 40x30 degree lamp at the lens: the integral over all it lights, by 8192 patches, for one pixel.
+// One bounce for one pixel: the integral, over 8192 patches, of all that a uniform 40x30 degree lamp at the lens
+// lights.
 double BruteForceRange_m(double corner_m, double albedo, int u, int v) {
   constexpr int kX = 128, kY = 64;
   const DepthCameraSheet sheet = Sheet3kS();
@@ -62,14 +63,14 @@ double BruteForceRange_m(double corner_m, double albedo, int u, int v) {
 
 double Bulge_m(const std::vector<double>& errors_m) { return *std::ranges::max_element(errors_m); }
 
-// What of a range error along the pixel's ray stands off the wall.
+// Component of a range error along the pixel's ray that is perpendicular to the wall.
 double OffTheWall_m(double error_m, double corner_m, int u) {
   const WallPoint p = MeetCorner(corner_m, (u - 31.5) / Sheet3kS().camera.fx_px, 0.5 / Sheet3kS().camera.fy_px);
   return error_m * -p.normal.dot(p.point / p.range_m);
 }
 
 TEST(TofMultipath, BulgesACornerAsABruteForceIntegralDoes) {
-  // A one-bounce quadrature made elsewhere: how far albedo 0.7 stands off the wall with the corner 1, 2, 3, 4 m away.
+  // From an independent one-bounce quadrature: offset from walls of albedo 0.7 with the corner at 1, 2, 3 and 4 m.
   const double about_mm[] = {15, 29, 45, 59};
   for (int corner_m = 1; corner_m <= 4; ++corner_m) {
     const Stage stage = Corner(corner_m, 0.7);
@@ -83,7 +84,7 @@ TEST(TofMultipath, BulgesACornerAsABruteForceIntegralDoes) {
     }
     EXPECT_NEAR(Bulge_m(ours_m) / Bulge_m(brute_m), 1.0, 0.1) << corner_m << " m";
     EXPECT_NEAR(Bulge_m(off_wall_m) * 1e3 / about_mm[corner_m - 1], 1.0, 0.1) << corner_m << " m";
-    double squares = 0.0, brute_squares = 0.0;  // and the whole profile
+    double squares = 0.0, brute_squares = 0.0;  // over the whole profile
     for (std::size_t i = 0; i < ours_m.size(); ++i) {
       squares += std::pow(ours_m[i] - brute_m[i], 2);
       brute_squares += std::pow(brute_m[i], 2);
@@ -121,7 +122,7 @@ TEST(TofMultipath, KeepsToWhatTheLampReaches) {
     EXPECT_NEAR(bounced.range_m[Pixel(u, 24)], straight.range_m[Pixel(u, 24)], 1e-3) << u;
 }
 
-// The even part of the scatter: 0.006 of the mean phasor, all by hand from the ideal frame's ranges and amplitudes.
+// The uniform part of the scatter: 0.006 of the mean phasor, by hand from the ideal frame's ranges and amplitudes.
 TEST(TofScatter, PullsDarkWallsTowardsABrightPlateAsTheMeanPhasorDoes) {
   const DepthCameraErrors errors{.scatter_share = 0.006, .scatter_flat = 1.0};
   const struct {
@@ -147,7 +148,7 @@ TEST(TofScatter, PullsDarkWallsTowardsABrightPlateAsTheMeanPhasorDoes) {
   }
 }
 
-// Fresnel, written out for both polarisations: reflectance of a slab of two faces at this angle of incidence.
+// Fresnel reflectance of a slab with two faces at this angle of incidence, written out for both polarisations.
 double Slab(double angle_rad) {
   const double inside_rad = std::asin(std::sin(angle_rad) / 1.52);
   const double normal = std::pow(0.52 / 2.52, 2);
@@ -185,7 +186,7 @@ TEST(TofGlass, MixesThePaneWithWhatIsBehindIt) {
       const double passed = (1 - slab) * std::pow(0.89, 1 / std::sqrt(1 - std::pow(std::sin(angle_rad) / 1.52, 2)));
       std::vector<Way> ways{{kDirt * std::cos(angle_rad), 1.0},
                             {passed * passed * kWallAlbedo / (wall_m * wall_m), wall_m}};
-      if (angle_deg > 45.0) {  // mirrored onwards, to the wall, at this angle to its normal
+      if (angle_deg > 45.0) {  // the mirrored ray meets the wall at this angle to its normal
         const double off_rad = kPi - 2 * angle_rad, way_m = 1.0 + (wall_m - 1.0) / std::cos(off_rad);
         ways.push_back({slab * slab * kWallAlbedo * std::cos(off_rad) / (way_m * way_m), way_m});
       }
@@ -233,8 +234,8 @@ TEST(TofSpecular, SeesARetroReflectorByItsGain) {
   EXPECT_TRUE(retro.Expose("specular,saturation").flags[1000] & kSaturated);
 }
 
-// Two boards, exactly: two phasors of half the lamp each, there and back over the lens.
-TEST(TofLamp, MeasuresTheMeanOfTheWaysFromItsBoards) {
+// Two boards, exactly: two phasors of half the lamp each, on the path from the board to the wall and back to the lens.
+TEST(TofLamp, MeasuresTheMeanOfThePathsFromItsBoards) {
   const DepthCameraErrors errors{.lamp_baseline_m = 0.12, .lamp_at_edge = 1.0};
   const DepthCameraSheet sheet = Sheet3kS();
   for (const double wall_m : {0.3, 0.5, 1.0, 4.0}) {
@@ -265,8 +266,8 @@ TEST(TofLamp, FallsToHalfAtTheEdgeOfTheView) {
 
 TEST(TofLamp, CastsTheShadowOfAPostFromEachBoard) {
   const DepthCameraErrors errors{.lamp_baseline_m = 0.12, .lamp_at_edge = 1.0};
-  // A post 4 cm wide at 1 m before a wall at 2 m: the board at x = -0.12 (left) throws its shadow to the right, to
-  // x = 0.12 +- 0.04 m on the wall, the other one to the left.
+  // A post 4 cm wide at 1 m in front of a wall at 2 m. The board at x = -0.12 (left) casts its shadow to the right, to
+  // x = 0.12 +- 0.04 m on the wall; the other board casts it to the left.
   const Stage post({Wall(2.0), {{1.0, 0, 0}, {0.001, 0.04, 10.0}}}), bare({Wall(2.0)});
   const DepthFrame with = post.Expose("lamp", {}, errors), without = bare.Expose("lamp", {}, errors);
   const auto dimming = [&](double x_m) {

@@ -21,7 +21,7 @@ inline const CarDescription& Merlin() {
   return car;
 }
 
-// A file in a folder of its own, gone with the object.
+// A file in a temporary folder, removed with the object.
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& name, const std::string& text) {

@@ -1,4 +1,4 @@
-// Cars that others described drive and see in the twin as ours does.
+// Cars that others described drive and see in the twin like ours.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -22,7 +22,7 @@ class AnyCar : public testing::TestWithParam<Foreign> {
   }
   std::unique_ptr<World> Place(const std::string& worldbody, const Pose& T_world_start = Pose::Identity()) const {
     const TemporaryFile room("room.xml", Room(worldbody));
-    // What the electronics add is another test's.
+    // The electronics are tested elsewhere.
     return std::make_unique<World>(WorldOptions{
         .room = room.path(), .car = car_, .T_world_start = T_world_start, .drivetrain = IdealDrivetrain()});
   }
@@ -85,7 +85,7 @@ TEST_P(AnyCar, StandsStill) {
   EXPECT_LT((world->T_world_base().translation() - before.translation()).norm(), 1e-6);
 }
 
-// A wall across the way: what each camera sees along its axis is as far as its place and direction say.
+// With a wall across the path, each camera must measure the distance that its position and direction imply.
 TEST_P(AnyCar, SeesWithItsCamerasAtTheirPlaces) {
   const Pose T_world_start = FromXyYaw(-1.0, 0.3, 0.0);
   const auto world =
@@ -105,7 +105,7 @@ TEST_P(AnyCar, SeesWithItsCamerasAtTheirPlaces) {
     EXPECT_GE(mj_name2id(world->model(), mjOBJ_BODY, link.name.c_str()), 0) << link.name;
 }
 
-// What MuJoCo refuses of the car is the car's fault, not the room's.
+// If MuJoCo rejects the car, the message blames the car and not the room.
 TEST_P(AnyCar, IsBlamedForWhatDoesNotCompile) {
   for (CarLink& link : car_.links) link.mass_kg = 0.0;
   try {

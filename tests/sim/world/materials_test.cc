@@ -11,7 +11,7 @@
 namespace merlin::sim {
 namespace {
 
-// A file that is gone when the test is over.
+// A file that is removed at the end of the test.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& text)
@@ -91,7 +91,7 @@ TEST(ReadMaterials, NamesTheNearestKeyAndTheLine) {
                  ".yaml:1: defalt: unknown key; did you mean 'default'?");
 }
 
-TEST(ReadMaterials, RefusesAnAlbedoThatIsNone) {
+TEST(ReadMaterials, RejectsABadAlbedo) {
   for (const char* albedo : {"1.01", "-0.1", ".nan", ".inf", "bright", "", "[0.5]", "0.5 m"}) {
     const std::string error = ErrorOf(std::string("materials:\n  wall: {nir_albedo: ") + albedo + "}\n");
     ExpectContains(error, ".yaml:2: materials.wall.nir_albedo: expected a number in [0, 1], got");

@@ -50,7 +50,7 @@ TEST(MeshPieces, ABoxIsConvex) {
   EXPECT_EQ(pieces->front().size(), 8u);
 }
 
-TEST(MeshPieces, EqualVerticesAreOne) {  // as STL has them: three of its own for each triangle
+TEST(MeshPieces, EqualVerticesAreMerged) {  // as in STL, where each triangle has three vertices of its own
   TriangleMesh loose;
   for (const auto& t : Box().triangles) {
     const int first = static_cast<int>(loose.vertices.size());
@@ -68,7 +68,7 @@ TEST(MeshPieces, ABoxWithoutALidIsFiveSheets) {
   ASSERT_TRUE(pieces);
   EXPECT_EQ(pieces->size(), 5u);
   for (const auto& piece : *pieces) {
-    EXPECT_EQ(piece.size(), 8u);  // a rectangle's corners on either side
+    EXPECT_EQ(piece.size(), 8u);  // the corners of a rectangle, on both sides
     double thinnest_m = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
       double low = 1e9, high = -1e9;
@@ -89,13 +89,13 @@ TEST(MeshPieces, ABoxInsideOutEnclosesFreeSpace) {
 TEST(MeshPieces, EachConvexPartIsABody) {
   TriangleMesh mesh = Box();
   AddBox(mesh, {5, 0, 0}, {6, 1, 1});
-  AddBox(mesh, {2, 1, 0.5}, {4, 3, 2});  // into the first
+  AddBox(mesh, {2, 1, 0.5}, {4, 3, 2});  // overlaps the first
   EXPECT_FALSE(IsConvex(mesh));
   EXPECT_EQ(ConvexPieces(mesh, 10)->size(), 3u);
   EXPECT_FALSE(ConvexPieces(mesh, 2));
 }
 
-TEST(MeshPieces, AHollowBoxIsTwoShells) {  // the outer skin of a building and the inner one of its room
+TEST(MeshPieces, AHollowBoxIsTwoShells) {  // the outside of a building, and the inside of its room
   TriangleMesh hollow;
   AddBox(hollow, {0, 0, 0}, {2, 1, 1});
   for (auto& t : hollow.triangles) std::swap(t[1], t[2]);
@@ -116,7 +116,7 @@ TEST(MeshPieces, SheetsOfAnAngleCoverItsSurfaceAndNothingElse) {
     Eigen::Vector3d twice(0, 0, 0);
     for (std::size_t i = 0, n = piece.size() / 2; i < n; ++i) twice += piece[i].cross(piece[(i + 1) % n]);
     area_m2 += 0.5 * twice.norm();
-    for (const auto& corner : piece)  // nothing of it in the notch
+    for (const auto& corner : piece)  // no corner lies in the notch
       EXPECT_FALSE(corner.x() > 1.001 && corner.y() > 1.001);
   }
   EXPECT_NEAR(area_m2, 2 * 3.0 + 8.0 * 0.5, 1e-2);
@@ -142,10 +142,10 @@ TEST(MeshPieces, ARoundBodyIsConvexAndADentOfACentimetreIsNot) {
   EXPECT_FALSE(IsConvex(ball));
 }
 
-TEST(MeshPieces, NothingIsNoPiece) {
+TEST(MeshPieces, AnEmptyMeshHasNoPieces) {
   EXPECT_FALSE(IsConvex({}));
   EXPECT_TRUE(ConvexPieces({}, 10)->empty());
-  // A triangle without an area is none.
+  // A triangle without area is ignored.
   EXPECT_TRUE(ConvexPieces({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}, 10)->empty());
   EXPECT_EQ(ConvexPieces({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, 10)->size(), 1u);
 }

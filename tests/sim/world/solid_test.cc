@@ -1,4 +1,4 @@
-// The car touches what its cameras see, and is the same car, in every room.
+// In every room the car touches what its cameras see, and behaves the same.
 #include "sim/world/solid.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ void ExpectSays(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
 }
 
-// A bend at 1 m/s, then straight into the wall at x = 1.5 m, and back: wheels roll and slip, the bumper pushes.
+// Drives a bend at 1 m/s, then straight into the wall at x = 1.5 m, then back: wheels roll and slip, the bumper pushes.
 constexpr char kWall[] = R"(<geom name="wall" type="box" pos="1.55 0 .5" size=".05 3 .5"/>)";
 
 std::vector<Eigen::Vector3d> PathIn(const std::string& room) {
@@ -75,7 +75,7 @@ void ExpectPlainPath(const std::string& room) {
   EXPECT_LT(worst_m, kSamePath_m) << room;
 }
 
-// How far the front gets in 4 s of driving ahead at 0.5 m/s; the car's front is 0.45 m before its base.
+// How far the front gets in 4 s ahead at 0.5 m/s. The car's front is 0.45 m ahead of its base.
 double FrontAfterDriving_m(const World& world) { return world.T_world_base().translation().x() + 0.45; }
 
 double FrontIn_m(const std::string& worldbody, const std::string& rest = "") {
@@ -84,9 +84,9 @@ double FrontIn_m(const std::string& worldbody, const std::string& rest = "") {
   StepFor(*world, 4.0);
   return FrontAfterDriving_m(*world);
 }
-constexpr double kFree_m = 2.3;  // where nothing stops the front, it gets at least this far
+constexpr double kFree_m = 2.3;  // the front gets at least this far if nothing stops it
 
-TEST(Solid, ThePlainPathMeetsTheWall) {
+TEST(Solid, TheUsualPathTouchesTheWall) {
   double most_m = 0.0;
   for (const Eigen::Vector3d& p : PlainPath()) most_m = std::max(most_m, p.x());
   EXPECT_NEAR(most_m + 0.45, 1.5, 0.03);
@@ -104,7 +104,7 @@ TEST(Solid, FloorsOfAnyContactBitsCarryTheCar) {
                        "<default><default class='off'><geom contype='0' conaffinity='0'/></default></default>"));
 }
 
-TEST(Solid, ContactValuesOfTheRoomDoNotReachTheCar) {
+TEST(Solid, ContactValuesOfTheRoomDoNotAffectTheCar) {
   for (const char* values :
        {"margin='.02'", "gap='.02'", "margin='.02' gap='.01'", "priority='5'", "priority='2147483647'", "condim='1'",
         "condim='6' friction='3 2 2'", "friction='.05'", "priority='3' friction='.01 0 0' condim='4'", "solref='.2 .3'",
@@ -113,7 +113,7 @@ TEST(Solid, ContactValuesOfTheRoomDoNotReachTheCar) {
     ExpectPlainPath(Room(std::string(kPlane) + kWall, fmt::format("<default><geom {}/></default>", values)));
 }
 
-TEST(Solid, NothingElseOfARoomReachesTheCar) {
+TEST(Solid, NothingElseInARoomChangesTheCar) {
   for (const char* rest :
        {"<compiler boundmass='1' boundinertia='.1'/>", "<compiler settotalmass='100' inertiafromgeom='true'/>",
         "<compiler balanceinertia='true' autolimits='false' angle='radian' eulerseq='ZYX' alignfree='true'/>",
@@ -175,13 +175,13 @@ TEST(Solid, VisualGeomsStopTheCarWhereTheyAreSeen) {
     EXPECT_NEAR(FrontIn_m(fmt::format("<geom {} contype='0' conaffinity='0' group='2'/>", shape)), 1.5, 0.03) << shape;
 }
 
-TEST(Solid, WhatIsNotSeenOrPassableDoesNotStopTheCar) {
+TEST(Solid, UnseenAndPassableGeomsDoNotStopTheCar) {
   const char* visual = "<geom type='box' size='.05 1 .3' pos='1.55 0 .3' contype='0' conaffinity='0' {}/>";
   const std::string assets = "<asset><material name='cloth'/><material name='air' rgba='1 1 1 0'/></asset>";
   for (const char* what : {"group='3'", "rgba='1 1 1 0'", "material='cloth'", "material='air'"})
     EXPECT_GT(FrontIn_m(fmt::format(fmt::runtime(visual), what), assets), kFree_m) << what;
   EXPECT_LT(FrontIn_m(fmt::format(fmt::runtime(visual), "rgba='1 1 1 .1'"), assets), 1.53);
-  // Contacts of its own count, whatever the material.
+  // Its own contacts count, whatever the material is.
   EXPECT_LT(FrontIn_m("<geom type='box' size='.05 1 .3' pos='1.55 0 .3' material='cloth'/>", assets), 1.53);
 }
 
@@ -192,7 +192,7 @@ TEST(Solid, APanelEndsWhereItIsSeenToEnd) {
     EXPECT_NEAR(FrontIn_m(fmt::format("<geom type='plane' size='.5 .5 1' pos='1.5 .2 .5' zaxis='-1 0 0' {}/>", bits)),
                 1.5, 0.03);
   }
-  // A table's top as a visual plane, 0.7 m high: the car passes below.
+  // The top of a table as a visual plane, 0.7 m high: the car passes below it.
   EXPECT_GT(FrontIn_m("<geom type='plane' size='.5 .5 1' pos='1.5 0 .7' contype='0' conaffinity='0'/>"), kFree_m);
 }
 
@@ -201,13 +201,14 @@ int CarContactBits(const std::string& worldbody, const char* geom, const std::st
   return world->model()->geom_contype[mj_name2id(world->model(), mjOBJ_GEOM, geom)] & kMeetsCar;
 }
 
-TEST(Solid, GeomsThatCoverAVisualOneStandForIt) {
+TEST(Solid, GeomsThatCoverAVisualGeomStandInForIt) {
   const std::string seen = "<geom name='seen' type='box' size='.02 1 .5' pos='0 0 .5' contype='0' conaffinity='0'/>";
-  // Its faces are at x = +-0.02 m; how far the other's face is behind the near one.
+  // Its faces are at x = +-0.02 m. Each line says how far the face of the other geom is behind the near one.
   EXPECT_FALSE(CarContactBits(seen + "<geom type='box' size='.1 1 .5' pos='.12 0 .5'/>", "seen"));  // 4 cm
   EXPECT_TRUE(CarContactBits(seen + "<geom type='box' size='.1 1 .5' pos='.14 0 .5'/>", "seen"));   // 6 cm
-  EXPECT_TRUE(CarContactBits(seen + "<geom type='box' size='.1 .5 .5' pos='.1 .5 .5'/>", "seen"));  // half of it
-  EXPECT_TRUE(CarContactBits(seen + "<geom type='sphere' size='.04' pos='0 0 .5'/>", "seen"));      // a point of it
+  EXPECT_TRUE(CarContactBits(seen + "<geom type='box' size='.1 .5 .5' pos='.1 .5 .5'/>", "seen"));  // covers half of it
+  EXPECT_TRUE(
+      CarContactBits(seen + "<geom type='sphere' size='.04' pos='0 0 .5'/>", "seen"));  // covers one point of it
   EXPECT_TRUE(CarContactBits(seen + "<geom type='box' size='.1 .4 .5' pos='0 .55 .5'/>"
                                     "<geom type='box' size='.1 .4 .5' pos='0 -.55 .5'/>",
                              "seen"));  // a gap of 0.3 m
@@ -219,17 +220,17 @@ TEST(Solid, GeomsThatCoverAVisualOneStandForIt) {
       seen + "<geom type='box' size='.02 1 .5' pos='0 0 .5' group='3' contype='0' conaffinity='0'/>", "seen"));
 }
 
-TEST(Solid, WhatStandsForAVisualGeomMeetsTheCar) {
+TEST(Solid, StandInsForAVisualGeomTouchTheCar) {
   const char* room =
       "<geom type='box' size='.05 1 .3' pos='1.55 0 .3' contype='0' conaffinity='0'/>"
       "<geom name='for' type='box' size='.05 1 .3' pos='1.55 0 .3' group='3' contype='{0}' conaffinity='{0}'/>";
   for (const int bits : {1, 2, 4, 8}) EXPECT_NEAR(FrontIn_m(fmt::format(fmt::runtime(room), bits)), 1.5, 0.03) << bits;
-  // An invisible geom whose bits do not meet and that stands for nothing seen is no wall.
+  // An invisible geom with other bits, which stands in for nothing, is not a wall.
   EXPECT_GT(FrontIn_m("<geom type='box' size='.05 1 .3' pos='1.55 0 .3' group='3' contype='4' conaffinity='4'/>"),
             kFree_m);
 }
 
-TEST(Solid, AFloorStandsForWhatLiesOnItButForNoKerb) {
+TEST(Solid, AFloorStandsInForAMatButNotForAKerb) {
   const auto board = [](double height_m) {
     return fmt::format("<geom name='seen' type='box' size='.5 1 {0}' pos='2 0 {0}' contype='0' conaffinity='0'/>",
                        height_m / 2);
@@ -239,19 +240,19 @@ TEST(Solid, AFloorStandsForWhatLiesOnItButForNoKerb) {
   EXPECT_TRUE(CarContactBits(board(0.04), "seen"));
 }
 
-TEST(Solid, OnlyWhatMovesWithAGeomStandsForIt) {
+TEST(Solid, OnlyGeomsThatMoveWithAGeomStandInForIt) {
   const std::string wall = "<geom type='box' size='1 .1 1' pos='0 0 1'/>";
   const char* leaf = "<geom name='seen' type='box' size='.5 .02 1' pos='.5 0 1' contype='0' conaffinity='0'/>";
   EXPECT_FALSE(CarContactBits(wall + "<body>" + leaf + "</body>", "seen"));
   EXPECT_TRUE(
       CarContactBits(wall + "<body><joint axis='0 0 1'/><geom size='.01' pos='0 0 3'/>" + leaf + "</body>", "seen"));
-  // Shapes of one body are made for each other: 6 cm along x and z are near enough.
+  // Shapes of one body belong together: 6 cm along x and z is near enough.
   const std::string shape = "<geom type='box' size='.44 .02 .94' pos='.5 0 1'/>";
   EXPECT_FALSE(CarContactBits(std::string("<body><joint axis='0 0 1'/>") + shape + leaf + "</body>", "seen"));
   EXPECT_TRUE(CarContactBits(shape + leaf, "seen"));
 }
 
-// A box of these corners as MJCF's vertices, and its faces from that vertex on.
+// Vertices of a box between these corners for MJCF, and its faces, with vertices numbered from this one.
 std::string BoxVertices(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   std::string text;
   for (int i = 0; i < 8; ++i)
@@ -291,7 +292,7 @@ TEST(Solid, AMeshCollidesAsItIs) {
   }
 }
 
-TEST(Solid, AnOpenShellIsSolidWhereItIsSeenFromEitherSide) {
+TEST(Solid, AnOpenShellIsSolidFromBothSides) {
   // The four upright faces of a room of 3 x 3 m, no floor and no ceiling, facing out or in.
   const std::string vertices = BoxVertices({-1.5, -1.5, 0}, {1.5, 1.5, 1});
   for (const char* faces :
@@ -315,7 +316,7 @@ TEST(Solid, AShellMayHaveAFloorOfItsOwnOnTheFloor) {
   }
 }
 
-TEST(Solid, WhatStandsForAFloorIsFloor) {
+TEST(Solid, StandInsForAFloorAreFloors) {
   for (const char* group : {"3", "0"})
     ExpectPlainPath(
         Room(fmt::format("<geom name='ground' type='plane' size='0 0 1' group='{}'/>"
@@ -323,7 +324,7 @@ TEST(Solid, WhatStandsForAFloorIsFloor) {
                          group, kWall)));
 }
 
-// A rough sheet of n x n cells, no two triangles of which lie in one plane.
+// A rough sheet of n x n cells in which no two triangles lie in one plane.
 std::string Scan(int n) {
   std::string vertices, faces;
   for (int i = 0; i <= n; ++i)
@@ -355,7 +356,7 @@ TEST(Solid, SaysWhyTheCarCannotStartInAHull) {
   ExpectSays(text, "'scan' collides as its convex hull");
 }
 
-TEST(Solid, OurRoomsHaveNoGeomOfWhichTheyMustBeWarned) {
+TEST(Solid, OurRoomsGiveNoWarnings) {
   for (const char* room : {"corridor_26x21", "bend_10"}) {
     WorldOptions options;
     options.room = std::string(MERLIN_SOURCE_DIR) + "/models/rooms/" + room + ".xml";

@@ -1,4 +1,4 @@
-// What turns the cameras, and what turns the car.
+// Panned cameras, and a car on a turntable.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ TEST(PanServo, MovesACameraAsFiniteDifferencesSay) {
   Send(world, 0.5, 0.2);
   StepFor(world, 0.5);
   world.pan()->Send(1.2);
-  StepFor(world, 0.2);  // in full swing
+  StepFor(world, 0.2);  // while it turns at full speed
   const BodyMotion before = world.CameraMotion(*Merlin().T_base_color);
   world.Step();
   const BodyMotion after = world.CameraMotion(*Merlin().T_base_color);
@@ -99,12 +99,12 @@ TEST(Turntable, TurnsTheCarAboutItsBaseOffTheFloor) {
   const BodyMotion motion = world.BaseMotion();
   EXPECT_NEAR(motion.angular_velocity_rad_s.z(), 1.0, 1e-9);
   EXPECT_LT(motion.velocity_m_s.norm(), 1e-9);
-  // The camera goes round: z x r.
+  // The camera moves on a circle: its velocity is along z x r.
   const BodyMotion camera = world.CameraMotion(Merlin().T_base_depth);
   const Eigen::Vector3d from_axis = camera.T_world_body.translation() - T_world_start.translation();
   EXPECT_LT((camera.velocity_m_s - Eigen::Vector3d::UnitZ().cross(from_axis)).norm(), 1e-3);
   StepFor(world, 6.0);
-  ExpectNear(world.T_world_base(), T_world_start, 1e-6);  // once round
+  ExpectNear(world.T_world_base(), T_world_start, 1e-6);  // after a full turn
   EXPECT_TRUE(world.CarTouches().empty());
   EXPECT_NEAR(static_cast<double>(Read(world).encoder_counts) * Merlin().MetresPerCount(), 0.0, 0.005);
 }

@@ -10,7 +10,7 @@
 namespace merlin::sim {
 namespace {
 
-// What the InputError of a call says; empty if there is none.
+// The message of the InputError that a call throws; empty if it throws none.
 template <class Call>
 std::string ErrorOf(Call call) {
   try {
@@ -36,7 +36,7 @@ TEST(World, CarHasItsMassAndStandsOnTheFloor) {
   EXPECT_NEAR(world->model()->body_subtreemass[base], 6.5, 1e-9);
   EXPECT_NEAR(world->data()->subtree_com[3 * base + 2], 0.110, 0.0005);
   StepFor(*world, 0.5);
-  // Weight over a quarter of it on each tyre: nothing else holds the car.
+  // Each tyre carries a quarter of the weight: nothing else supports the car.
   EXPECT_EQ(world->data()->ncon, 4);
   EXPECT_TRUE(world->CarTouches().empty());
   EXPECT_NEAR(world->T_world_base().translation().z(), 0.0, 0.0005);
@@ -92,7 +92,7 @@ TEST(World, ReportsTheWallItDrivesInto) {
   const auto world = MakeWorld(Room(std::string(kPlane) + Wall(1.5, 0.1)));
   Send(*world, 0.5, 0.0);
   Time first{0};
-  std::vector<Touch> touches;  // it pushes with spinning wheels: not every step has contact
+  std::vector<Touch> touches;  // with spinning wheels not every step has contact
   while (world->Now() < FromSeconds(4.0)) {
     world->Step();
     if (!world->CarTouches().empty()) touches = world->CarTouches();
@@ -114,7 +114,7 @@ TEST(World, AWheelOnWhatIsNotFloorIsATouch) {
   const auto world = MakeWorld(Room(std::string(kPlane) + step));
   EXPECT_TRUE(world->CarTouches().empty());
   Send(*world, 0.5, 0.0);
-  StepFor(*world, 2.0);  // the front wheels stand on it
+  StepFor(*world, 2.0);  // the front wheels are on it
   ASSERT_FALSE(world->CarTouches().empty());
   EXPECT_TRUE(world->CarTouches()[0].car_geom.starts_with("wheel_front_"));
   EXPECT_EQ(world->CarTouches()[0].other_geom, "step");
@@ -130,7 +130,7 @@ TEST(World, KnowsTheCarsGeoms) {
   EXPECT_TRUE(world->IsCarGeom(id("depth_camera_visual_0")));
 }
 
-TEST(World, DrawsWhatIsSeenAndHidesWhatTouches) {
+TEST(World, DrawsVisualShapesAndHidesCollisionShapes) {
   const auto world = EmptyWorld();
   for (int geom = 0; geom < world->model()->ngeom; ++geom)
     EXPECT_TRUE(!world->IsCarGeom(geom) ||
@@ -212,7 +212,7 @@ TEST(World, ReadsPlanAndNorth) {
                {"room.xml", "plan_xy_m"});
 }
 
-TEST(World, RoomsOwnDefaultsDoNotReachTheCar) {
+TEST(World, RoomsOwnDefaultsDoNotAffectTheCar) {
   const auto world = MakeWorld(Room(kPlane, R"(<compiler angle="radian" inertiafromgeom="true" settotalmass="100"/>
     <default><geom contype="0" margin="1" friction="0.01"/><joint damping="9" armature="9"/><general gear="5"/></default>)"
                                             "<statistic extent=\"3\"/>"));
@@ -275,7 +275,7 @@ std::unique_ptr<World> WithCurtain(const std::filesystem::path& room, bool close
 
 constexpr char kRoom7x10[] = MERLIN_SOURCE_DIR "/models/rooms/room_7x10.xml";
 
-// The geom that a ray meets first, and how far away.
+// The first geom that a ray hits, and its distance.
 struct Met {
   std::string geom;
   double range_m = -1.0;
@@ -313,7 +313,7 @@ TEST(World, RefusesToCloseACurtainThatIsNotThere) {
   ExpectSays(ErrorOf([&] { WithCurtain(file.path(), true); }), {"room.xml", "no curtain to close", "curtain*"});
 }
 
-TEST(World, LeavesOutWhatItsRoomLeavesOutOfTheOneItIncludes) {
+TEST(World, OmitsTheGeomsThatTheRoomLeavesOutOfAnIncludedOne) {
   constexpr char kWalls[] = R"(<geom name="floor" type="plane" size="0 0 1"/>
     <geom name="wall_a" type="box" pos="5 0 1" size=".1 1 1"/> <geom name="wall_b" type="box" pos="8 0 1" size=".1 1 1"/>)";
   const TemporaryFile whole("whole.xml", Room(kWalls));
@@ -338,7 +338,7 @@ TEST(Room7x10, StandsOnItsPlan) {
     const Eigen::Vector2d edge = (plan[(i + 1) % 4] - plan[i]).normalized();
     const Eigen::Vector3d outward(edge.y(), -edge.x(), 0.0);  // the outline runs counter-clockwise
     EXPECT_NEAR(outward.head<2>().dot(plan[i]), expected_m[i], 1e-4);
-    // Over the furniture and the windows.
+    // Above the furniture and the windows.
     EXPECT_NEAR(Look(*world, {0.0, 0.0, 2.6}, outward).range_m, expected_m[i], 1e-4) << i;
   }
 }
