@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Every key of a tree, with those above it: "drive.serial.port".
+// All keys of a tree with the keys above them, such as "drive.serial.port".
 void Collect(const YAML::Node& node, const std::string& path, std::set<std::string>& keys) {
   for (const auto& entry : node) {
     const std::string key = path + entry.first.Scalar();
@@ -76,7 +76,7 @@ TEST(HardwareFile, MayNotNameADeviceTwice) {
   const std::string two = FitComplaint(file, "drive: {serial: {port: /dev/x}}\ncompass: {serial: {port: /dev/x}}\n");
   EXPECT_NE(two.find("car.yaml: names a device twice"), std::string::npos) << two;
   EXPECT_NE(two.find("drive and compass"), std::string::npos) << two;
-  // The same port by another name.
+  // The same port under another name.
   std::ofstream(folder.path() / "port") << "";
   fs::create_symlink(folder.path() / "port", folder.path() / "link");
   const std::string port = (folder.path() / "port").string(), link = (folder.path() / "link").string();
@@ -97,7 +97,7 @@ TEST(HardwareFile, OfAnotherCarIsRefused) {
   EXPECT_NE(other.find("expected 'merlin'"), std::string::npos) << other;
   EXPECT_NE(other.find("got 'rover'"), std::string::npos) << other;
   EXPECT_EQ(FitComplaint(file, "car: merlin\n"), "");
-  EXPECT_EQ(FitComplaint(file, "clock: {watchdog_s: 1}\n"), "");  // says nothing of the car
+  EXPECT_EQ(FitComplaint(file, "clock: {watchdog_s: 1}\n"), "");  // does not name a car
 }
 
 TEST(HardwareFile, MustNameTheColorCameraThatTheScenarioRequires) {

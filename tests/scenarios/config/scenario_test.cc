@@ -11,7 +11,7 @@
 namespace merlin {
 namespace {
 
-// What reading a scenario of this text says; empty: nothing to complain about.
+// The error message for a scenario with this text; empty if it is accepted.
 std::string Complaint(const std::string& text, const std::vector<std::string>& sets = {}) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "s.yaml";
@@ -132,7 +132,7 @@ TEST(Scenario, TakesAnIntegrationTimeOrLeavesItToTheStack) {
   EXPECT_TRUE(ReadScenario(file.string(), {}).perception.integration.automatic);
 }
 
-TEST(Scenario, RefusesAnIntegrationTimeThatIsNone) {
+TEST(Scenario, RejectsABadIntegrationTime) {
   const auto said = [](const std::string& time) {
     return Complaint("room: hall\nsensors:\n  depth: {integration_us: " + time + "}\n");
   };

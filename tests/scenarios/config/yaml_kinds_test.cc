@@ -1,4 +1,4 @@
-// What every kind of our YAML files promises alike, asked of each kind. Materials: tests/sim/world/materials_test.cc.
+// Promises that all kinds of our YAML files share, tested for each kind. Materials: tests/sim/world/materials_test.cc.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -16,11 +16,12 @@ namespace merlin {
 namespace {
 
 struct Kind {
-  std::string name, good, key;  // key: a number's, at the top
+  std::string name, good, key;  // key: one with a number, at the top level
   std::function<void(const std::filesystem::path&)> read;
 };
 
-// A mapping lies beside a car: ours, whose names follow the rule, so that an empty role is not asked for.
+// A mapping lies beside a car. The car is ours: its names follow the naming rule, so that an empty role is not an
+// error.
 void ReadMappingAt(const std::filesystem::path& file) {
   const std::filesystem::path urdf = file.parent_path() / "merlin.urdf";
   std::filesystem::copy_file(CarFile("merlin"), urdf, std::filesystem::copy_options::overwrite_existing);
@@ -47,7 +48,7 @@ std::vector<Kind> Kinds() {
   };
 }
 
-// What the reader says of that text, its own path left out; empty: nothing.
+// The reader's message about this text without the path; empty if there is none.
 std::string Said(const Kind& kind, const std::string& text) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "f.yaml";

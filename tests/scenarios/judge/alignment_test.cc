@@ -58,7 +58,7 @@ TEST(PairAtEqualStamps, KeepsOnlyInstantsBothHave) {
 }
 
 TEST(Ate, IsTheHeightOfCornersAlternatelyRaisedAndLowered) {
-  // Corners of a square moved by +h, -h, +h, -h: no rigid motion comes nearer, so each is off by h.
+  // Corners of a square moved by +h, -h, +h, -h: no rigid motion fits better, so each error is h.
   const double h_m = 0.05;
   std::vector<PosePair> pairs{{At(1, 1, 0), At(1, 1, h_m)},
                               {At(-1, 1, 0), At(-1, 1, -h_m)},
@@ -102,7 +102,7 @@ TEST(Ate, LeavesTheEstimateWhereItIsWhereAsked) {
   EXPECT_DOUBLE_EQ(ate.rmse_m, std::sqrt(13.0));
 }
 
-TEST(ErrorStatistics, AreThoseByHand) {
+TEST(ErrorStatistics, AgreeWithValuesByHand) {
   const ErrorStatistics odd = StatisticsOf({4.0, 1.0, 1.0});
   EXPECT_DOUBLE_EQ(odd.mean, 2.0);
   EXPECT_DOUBLE_EQ(odd.median, 1.0);
@@ -141,9 +141,9 @@ TEST(Ate, TakesTheTurnFromOrientationsWherePositionsLeaveItOpen) {
     EXPECT_NEAR(ate->rmse_m, 0.0, 1e-9);
     EXPECT_TRUE(ate->T_world_map.isApprox(T_world_map, 1e-5));
   };
-  expect_recovered({At(5, 6, 7)});                              // one
+  expect_recovered({At(5, 6, 7)});                              // one pose
   expect_recovered({At(5, 6, 7), At(5, 6, 7)});                 // standing
-  expect_recovered({At(0, 0, 0), At(10, 0, 0), At(20, 0, 0)});  // straight on
+  expect_recovered({At(0, 0, 0), At(10, 0, 0), At(20, 0, 0)});  // a straight line
 }
 
 TEST(Ate, IsNothingForNoPairsOrNumbersThatAreNotFinite) {
@@ -159,7 +159,7 @@ TEST(Rpe, IsTheErrorOfScaleOnAStraight) {
   for (int i = 0; i <= 24; ++i) pairs.push_back({At(0.125 * i, 0, 0), At(0.1275 * i, 0, 0)});
   const std::optional<Rpe> rpe = RpeOverOneMetre(pairs);
   ASSERT_TRUE(rpe);
-  EXPECT_EQ(rpe->pairs, 17u);  // all of 1 m; the next start has 0.875 m left, too little
+  EXPECT_EQ(rpe->pairs, 17u);  // all pairs over 1 m; the next start has only 0.875 m left
   EXPECT_NEAR(rpe->translation_percent, 2.0, 1e-9);
   EXPECT_NEAR(rpe->rotation_deg_per_m, 0.0, 1e-9);
 }
@@ -176,7 +176,7 @@ TEST(Rpe, IsTheDriftOfYawPerMetre) {
   EXPECT_NEAR(rpe->rotation_deg_per_m, 0.5, 1e-9);
 }
 
-TEST(Rpe, IsZeroForAnEstimateThatOnlyItsScaleIsWrongOf) {
+TEST(Rpe, IsZeroForAScaledEstimateIfScaleIsFitted) {
   std::vector<PosePair> pairs;
   for (int i = 0; i <= 24; ++i) pairs.push_back({FromXyYaw(0.125 * i, 0, 0.1 * i), FromXyYaw(0.25 * i, 0, 0.1 * i)});
   const RelativeErrors errors = ErrorsOver(pairs, 0.5, 0.5);
@@ -186,7 +186,7 @@ TEST(Rpe, IsZeroForAnEstimateThatOnlyItsScaleIsWrongOf) {
   EXPECT_TRUE(ErrorsOver(pairs, 4.0).translation_m.empty());
 }
 
-TEST(Rpe, DoesNotSeeHowTheWholeLies) {
+TEST(Rpe, IgnoresARigidTransformOfTheWhole) {
   std::vector<PosePair> pairs = RandomPairs(300, 0.02);
   const Rpe before = *RpeOverOneMetre(pairs);
   for (PosePair& pair : pairs) pair.T_map_base = Exp((Vector6d() << 9, 8, 7, 1, 2, 3).finished()) * pair.T_map_base;

@@ -81,7 +81,7 @@ TEST(Evaluate, RefusesAnUnknownNameAndNamesTheNearest) {
   EXPECT_THROW(Evaluate({{"lap_min", 1}}, {}, true, "x"), InputError);
 }
 
-// Every metric that a check may name, whether it compares with the truth: told here by what it means.
+// Every metric that a check may name, and whether it compares with the truth, listed by what it means.
 TEST(Evaluate, DoesNotJudgeWithoutTruthWhatComparesWithIt) {
   for (const char* name :
        {"laps_min", "collisions_max", "ate_rmse_m_max", "ate_online_rmse_m_max", "rpe_translation_percent_max",
@@ -97,12 +97,12 @@ TEST(Evaluate, DoesNotJudgeWithoutTruthWhatComparesWithIt) {
         "loops_closed_min", "place_found_s_max", "place_found_m_max", "depth_frames_min", "color_frames_min",
         "frames_dropped_max", "stack_ms.p50_max", "peak_rss_mb_max", "stack_rss_mb_max"})
     EXPECT_TRUE(EvaluateOne(name, 0, {}, false).judged) << name;
-  EXPECT_FALSE(EvaluateOne("stack_rss_mb_max", 512, {}, true).judged);  // the simulation shares the process
+  EXPECT_FALSE(EvaluateOne("stack_rss_mb_max", 512, {}, true).judged);  // the simulation runs in the same process
   Metrics metrics;
   metrics.distance_m = 9.0;
   EXPECT_TRUE(EvaluateOne("distance_m_min", 8, metrics, false).pass);
   EXPECT_FALSE(EvaluateOne("distance_m_min", 10, metrics, false).pass);
-  EXPECT_FALSE(EvaluateOne("frames_dropped_max", 0, {}, false).pass);  // could have been known, and is not
+  EXPECT_FALSE(EvaluateOne("frames_dropped_max", 0, {}, false).pass);  // it could be known, but is not
 }
 
 TEST(Judge, FailsWithAnyCheck) {

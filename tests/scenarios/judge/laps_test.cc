@@ -116,7 +116,7 @@ TEST(CountLaps, CountsAFigureOfEightByItsLoopAroundTheCentre) {
   std::vector<Eigen::Vector2d> eight = around;
   eight.insert(eight.end(), {{-4, -4}, {-8, -4}, {-8, -3}, crossing, left, kStart});
   EXPECT_EQ(CountLaps(Along(eight), kOutline), 1);
-  // Both loops beside the centre, or the crossing on it: nothing is wound around.
+  // Both loops beside the centre, or the crossing on the centre: the path winds around nothing.
   EXPECT_EQ(CountLaps(Along({{-5, -3}, {-5, 3}, {5, -3}, {5, 3}, {-5, -3}}), kOutline), 0);
   EXPECT_EQ(CountLaps(Along({{-5, -3}, {-5, 3}, {-1, 0}, {-1, -3}, {-5, -3}}), kOutline), 0);
 }
@@ -133,7 +133,8 @@ TEST(CountLaps, StartsAnewWhereThePathRunsOverTheCentre) {
 }
 
 TEST(CountLaps, AsksTheCentreOfTheAreaWhereverTheRoomLies) {
-  // A trapezium far from the origin, its corners clockwise and one of them twice: the mean of its corners lies beside it.
+  // A trapezium far from the origin, with clockwise corners, one of them repeated: the mean of its corners is not its
+  // centroid.
   const Outline room{{1000, 500}, {1000, 500}, {1000, 510}, {1004, 510}, {1030, 500}};
   // Its centre by hand: a square part of 4 x 10 m and a triangle of 26 x 10 m.
   const Eigen::Vector2d centre((40 * 1002.0 + 130 * (1004 + 26 / 3.0)) / 170,

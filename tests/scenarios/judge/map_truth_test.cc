@@ -9,7 +9,7 @@
 namespace merlin {
 namespace {
 
-// An empty room with the given outer sizes about the origin, walls without end in height.
+// An empty room with these outer dimensions about the origin; its walls are infinitely high.
 TrueRange RayInRoom(double width_m, double height_m) {
   return [=](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
     double range_m = HUGE_VAL;
@@ -61,8 +61,9 @@ TEST(Coverage, CountsOnlyPointsNearEnoughAndOfTheRightHeight) {
 }
 
 TEST(Coverage, AsksOnlyForWallsWithinSight) {
-  // In a corridor 40 m long and 2 m wide, seen from its middle: 7 m reach along the wall to sqrt(7^2 - 1^2 - 0.65^2) =
-  // 6.897 m either way, whose map covers one side from 0 to 6.897 m, a quarter, and more that nobody asks for.
+  // In a corridor 40 m long and 2 m wide, seen from its middle, a view of 7 m reaches sqrt(7^2 - 1^2 - 0.65^2) = 6.897
+  // m along the walls in both directions. The map covers one side from 0 to 6.897 m, a quarter of that, and walls out
+  // of view.
   std::vector<MapPoint> map;
   AddWall(map, {0.1, 1}, {20, 1});
   const std::optional<double> coverage =
@@ -95,19 +96,19 @@ TEST(Coverage, IsNotKnownWhereNothingIsVisible) {
 }
 
 TEST(MapToPlan, IsTheWallsDistance) {
-  // Walls 3 cm inside the true ones, and turned to a place of their own.
+  // Walls 3 cm inside the true ones, in a map frame that is rotated and shifted.
   const Pose T_world_map = FromXyYaw(5, 6, 0.7);
   std::vector<MapPoint> map = CloudOfWalls(Rectangle(5.94, 3.94));
   for (MapPoint& point : map) point.p_map = (T_world_map.inverse() * point.p_map.cast<double>()).cast<float>();
   EXPECT_NEAR(MapToPlanP95_m(map, T_world_map, RayInRoom(6, 4)).value(), 0.03, 2e-6);
-  // As far outside, in the wall.
+  // The same distance outside, within the wall.
   EXPECT_NEAR(MapToPlanP95_m(CloudOfWalls(Rectangle(6.06, 4.06)), Pose::Identity(), RayInRoom(6, 4)).value(), 0.03,
               2e-6);
 }
 
 TEST(MapToPlan, ShowsADoubledWall) {
   std::vector<MapPoint> map = CloudOfWalls(Rectangle(5.98, 3.98));
-  AddWall(map, {-1, -1.7}, {1, -1.7});  // again, 0.30 m inside: more than a twentieth
+  AddWall(map, {-1, -1.7}, {1, -1.7});  // a second wall 0.30 m inside, with more than a twentieth of the points
   EXPECT_NEAR(MapToPlanP95_m(map, Pose::Identity(), RayInRoom(6, 4)).value(), 0.30, 2e-6);
 }
 

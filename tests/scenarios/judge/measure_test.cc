@@ -9,7 +9,7 @@
 namespace merlin {
 namespace {
 
-// 1 m along x, then 1 m along y, a pose each 0.1 m and 0.1 s; all of it off by this much to the left of the first leg.
+// 1 m along x, then 1 m along y, with a pose every 0.1 m and 0.1 s; all of it shifted to the left of the first leg.
 Trajectory Corner(double left_m = 0.0) {
   Trajectory path;
   for (int i = 0; i <= 20; ++i)

@@ -22,7 +22,7 @@ std::set<std::string> Names(const fs::path& path) {
   return names;
 }
 
-// Refused with InputError, and nothing in it touched.
+// Expects an InputError, and that nothing in the folder has changed.
 void ExpectRefused(const fs::path& path, const std::string& reason) {
   const bool is_folder = fs::is_directory(path);
   const std::set<std::string> before = is_folder ? Names(path) : std::set<std::string>{};
@@ -81,7 +81,7 @@ TEST(OutputFolder, ReplacesAnOlderRunWhole) {
   const OutputFolder newer(path);
   EXPECT_EQ(Names(path), std::set<std::string>{kMarker});
   EXPECT_EQ(Contents(path / kMarker), "merlin run: running \n");
-  EXPECT_EQ(Contents(outside / "precious"), "kept");  // what a link in it leads to is not the run's
+  EXPECT_EQ(Contents(outside / "precious"), "kept");  // files behind a link do not belong to the run
 }
 
 TEST(OutputFolder, ReplacesARunThatBrokeOffEvenBeforeItsMarkWasWritten) {
@@ -101,7 +101,7 @@ TEST(OutputFolder, ChecksWithoutChangingAnything) {
   EXPECT_TRUE(fs::is_empty(temporary.path()));
   {
     OutputFolder folder(path);
-    EXPECT_THROW(OutputFolder::Check(path), InputError);  // a run is at work
+    EXPECT_THROW(OutputFolder::Check(path), InputError);  // in use by a run
     folder.Write("map.ply", "points");
     folder.Finish("{}");
   }
@@ -132,7 +132,7 @@ TEST(OutputFolder, DoesNotTakeAFolderOrALinkForAMarker) {
   ExpectRefused(temporary.path() / "b", "a folder with other files in it");
 }
 
-TEST(OutputFolder, RefusesWhatIsNoFolder) {
+TEST(OutputFolder, RejectsAPathThatIsNotAFolder) {
   const TemporaryFolder temporary;
   WriteFile(temporary.path() / "file", "x");
   ExpectRefused(temporary.path() / "file", "something that is not a folder");

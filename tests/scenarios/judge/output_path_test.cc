@@ -35,7 +35,7 @@ TEST(CheckOutputFile, TakesANewFileAndOneToReplaceAndChangesNothing) {
   EXPECT_EQ(Contents(folder.path() / "old.ply.part"), "half");
 }
 
-TEST(CheckOutputFile, RefusesWhatIsNoFile) {
+TEST(CheckOutputFile, RejectsAPathThatIsNotAFile) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "file") << "x";
   fs::create_directory(folder.path() / "folder");

@@ -114,7 +114,7 @@ TEST(ToJUnit, MakesEachCheckATestCase) {
       "  </testsuite>\n</testsuites>\n");
 }
 
-// What Python's XML parser reads of it: the class name of the first test case. Empty: not well formed.
+// The class name of the first test case as Python's XML parser reads it; empty if the XML is not well formed.
 std::string ParsedClassName(const std::string& xml) {
   const TemporaryFolder folder;
   WriteFile(folder.path() / "junit.xml", xml);

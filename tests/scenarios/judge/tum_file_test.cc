@@ -112,7 +112,7 @@ TEST(TumFile, SurvivesBrokenTexts) {
   EXPECT_GT(taken, 1000);
 }
 
-// A pose a stamp [ms], whose x [m] is its place in the list.
+// One pose for each stamp [ms]; its x [m] is its index.
 Trajectory StampedAt(const std::vector<int>& stamps_ms) {
   Trajectory trajectory;
   for (const int stamp_ms : stamps_ms)
@@ -134,7 +134,8 @@ Indices Paired(const std::vector<int>& truth_ms, const std::vector<int>& estimat
 TEST(PairAtNearestStamps, PairsEachOfTheShorterWithTheNearest) {
   EXPECT_EQ(Paired({0, 10, 20, 30, 40}, {1, 19, 36}, 5), (Indices{{0, 0}, {2, 1}, {4, 2}}));
   EXPECT_EQ(Paired({1, 19, 36}, {0, 10, 20, 30, 40}, 5), (Indices{{0, 0}, {1, 2}, {2, 4}}));
-  EXPECT_EQ(Paired({0, 10, 20}, {5, 100}, 5), (Indices{{0, 0}}));  // the earlier of equals; exactly the limit counts
+  EXPECT_EQ(Paired({0, 10, 20}, {5, 100}, 5),
+            (Indices{{0, 0}}));  // the earlier of two equally near ones; the limit itself counts
   EXPECT_EQ(Paired({0, 10, 20}, {5, 100}, 4), Indices{});
   EXPECT_EQ(Paired({10, 20}, {-3, 40}, 20), (Indices{{0, 0}, {1, 1}}));  // beyond either end
   EXPECT_EQ(Paired({}, {1}, 5), Indices{});

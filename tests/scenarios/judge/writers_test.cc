@@ -26,7 +26,7 @@ TEST(ToTum, WritesNineDecimalsAndTheQuaternionLast) {
 }
 
 TEST(ToTum, KeepsTheScalarPositive) {
-  // 350 degrees: the quaternion of half of it has a negative scalar, its opposite says the same.
+  // 350 degrees: the quaternion of half that angle has a negative scalar; its negative is the same rotation.
   const double half_rad = 175.0 * std::numbers::pi / 180.0;
   const Pose pose(Eigen::Quaterniond(std::cos(half_rad), 0, 0, std::sin(half_rad)));
   EXPECT_TRUE(ToTum({{Time(0), pose}}).ends_with("-0.087155743 0.996194698\n"));

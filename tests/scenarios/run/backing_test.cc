@@ -97,7 +97,7 @@ class Backing : public ::testing::Test {
   }
 
   Decision decision_;
-  Eigen::Vector2d here_{0, 0}, turned_back_{0, 0};  // where it is, and where it began to back
+  Eigen::Vector2d here_{0, 0}, turned_back_{0, 0};  // position, and where it began to back
   double backed_m_ = 0.0;
   double fastest_back_m_s_ = 0.0;
 };

@@ -18,7 +18,7 @@ constexpr char kArena[] = R"(<geom name="floor" type="plane" size="0 0 1"/>
   <geom type="box" pos="0 2.05 1" size="3.1 .05 1"/> <geom type="box" pos="0 -2.05 1" size="3.1 .05 1"/>
   <geom type="box" pos="3.05 0 1" size=".05 2 1"/> <geom type="box" pos="-3.05 0 1" size=".05 2 1"/>)";
 
-// Holds the car where no physics would bring it.
+// Puts the car into poses that physics would not reach.
 void Hold(sim::World& world, const Pose& T_world_base) {
   const mjModel* model = world.model();
   int base = 0;
@@ -30,7 +30,7 @@ void Hold(sim::World& world, const Pose& T_world_base) {
   Eigen::Vector4d::Map(q + 3) = Eigen::Vector4d(turn.w(), turn.x(), turn.y(), turn.z());
 }
 
-// What the watch says of a car that started at the origin of the arena and is there now.
+// What the watch reports about a car that started at the origin of the arena and is now at this pose.
 std::string LostAt(const Pose& T_world_base, const std::string& room = kArena) {
   const auto world = sim::MakeWorld(sim::Room(room));
   CarWatch watch(*world, false);
@@ -43,7 +43,7 @@ std::string LostAt(const Pose& T_world_base, const std::string& room = kArena) {
 
 Pose At(double x_m, double y_m, double z_m = 0.0) { return Pose(Eigen::Translation3d(x_m, y_m, z_m)); }
 
-TEST(CarWatch, IsContentWithACarThatDrives) {
+TEST(CarWatch, ReportsNothingForACarThatDrives) {
   const auto world = sim::MakeWorld(sim::Room(kArena));
   CarWatch watch(*world, false);
   for (const double speed_m_s : {0.5, -0.5}) {
@@ -91,10 +91,10 @@ TEST(CarWatch, KnowsTheBoxOfEveryShape) {
     EXPECT_LT((got->min() - Eigen::Vector2d(x0, y0)).norm() + (got->max() - Eigen::Vector2d(x1, y1)).norm(), 1e-6)
         << room;
   };
-  EXPECT_FALSE(box(""));                                                                  // no end
-  EXPECT_FALSE(box("<geom type='box' pos='7 0 1' size='.1 3 1'/>"));                      // the car is not in it
-  expect("<geom type='plane' pos='1 0 -1' size='4 2 1'/>", -3, -2, 5, 2);                 // one with an end
-  expect("<geom type='plane' pos='0 0 -1' size='4 2 1' euler='0 0 90'/>", -2, -4, 2, 4);  // and turned
+  EXPECT_FALSE(box(""));                                                                  // infinite
+  EXPECT_FALSE(box("<geom type='box' pos='7 0 1' size='.1 3 1'/>"));                      // the car is outside
+  expect("<geom type='plane' pos='1 0 -1' size='4 2 1'/>", -3, -2, 5, 2);                 // a finite plane
+  expect("<geom type='plane' pos='0 0 -1' size='4 2 1' euler='0 0 90'/>", -2, -4, 2, 4);  // rotated
   expect("<geom type='sphere' pos='0 0 9' size='2'/>", -2, -2, 2, 2);                     // above the car
   expect("<geom type='capsule' pos='0 0 9' size='1 2' euler='90 0 0'/>", -1, -3, 1, 3);   // along y
   expect("<body pos='1 1 9'><geom type='cylinder' size='3 .5'/></body>", -2, -2, 4, 4);   // on a body
@@ -108,7 +108,7 @@ TEST(CarWatch, LeavesObstaclesOutOfTheRoomsBox) {
   EXPECT_NEAR(box->max().x(), 3.1, 1e-9);
 }
 
-TEST(CarWatch, LosesACarWhoseWheelsTouchNothingForHalfASecondButNotOnItsStand) {
+TEST(CarWatch, LosesACarWhoseWheelsTouchNothingForHalfASecondExceptOnTheTurntable) {
   const sim::TemporaryFile file("room.xml", sim::Room(kArena));
   sim::World world({.room = file.path(), .car = sim::Merlin(), .turntable_rate_rad_s = 1.0});  // held in the air
   CarWatch free(world, false), on_turntable(world, true);
@@ -119,7 +119,7 @@ TEST(CarWatch, LosesACarWhoseWheelsTouchNothingForHalfASecondButNotOnItsStand) {
   EXPECT_EQ(on_turntable.lost(), "");
 }
 
-// Onto a plate that is no floor: whatever carries the wheels is ground, a wall beside them is not.
+// A drop onto a plate that is not a floor: whatever carries the wheels is ground, a wall beside them is not.
 TEST(CarWatch, TakesAnythingUnderTheWheelsForGround) {
   const auto world =
       sim::MakeWorld(sim::Room(std::string(kArena) + "<geom type='box' pos='1.7 0 .002' size='1 1 .004'/>"));

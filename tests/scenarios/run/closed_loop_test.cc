@@ -64,7 +64,7 @@ TEST(CorridorShort, LeavesTheFilesOfARun) {
        {"result.json", "junit.xml", "scenario.yaml", "trajectory_estimate.tum", "trajectory_online.tum",
         "trajectory_truth.tum", "map.ply", "map.pgm", "map.yaml", "map.png", "map.slam"})
     EXPECT_GT(std::filesystem::file_size(out / name), 0u) << name;
-  // The resolved scenario is a scenario, and the same one.
+  // The resolved scenario can be read, and is the same scenario.
   const std::string text = ToYaml(ReadScenario((out / "scenario.yaml").string(), {}));
   std::ifstream in(out / "scenario.yaml");
   EXPECT_EQ(text, std::string(std::istreambuf_iterator<char>(in), {}));
@@ -96,14 +96,14 @@ TEST(CorridorShort, EndsInGoodOrderWhenInterrupted) {
                      .pace = 0.0,
                      .progress = {}};
   options.progress = [&stop](const LoopState& state) { stop = stop || state.now > std::chrono::seconds(4); };
-  options.pace = 20.0;  // so that progress is told of before the end
+  options.pace = 20.0;  // so that progress is reported before the end
   const RunReport report = RunScenario(options, stop);
   EXPECT_EQ(report.result.verdict, Verdict::kInterrupted);
   EXPECT_LT(*report.result.metrics.sim_time_s, 19.0);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "a/result.json"));
 }
 
-// Of the map that a run wrote: 15 bytes a point, the first twelve its place.
+// Points of the map that a run wrote: 15 bytes each, of which the first twelve are the position.
 int MapPointsIn(const std::filesystem::path& ply, const Eigen::AlignedBox3f& box_map) {
   std::ifstream in(ply, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -128,8 +128,8 @@ TEST(CorridorObstacle, StopsBeforeTheBoxStaysAndDrivesOn) {
   EXPECT_GE(*m.obstacle_stop_s, 5.0);
   EXPECT_GE(*m.distance_m, 9.0);  // about 5.5 m until it stands; the rest after the box has gone
   // At 1000 us, for which these limits were set: the automatic exposure sees more of the box's dark edges (61 points).
-  // The box's front covers 125 voxels of 4 cm (0.4 x 0.5 m), 64 of them where the camera still looks from 0.7 m away. Low
-  // down, and at the edges, nothing ever looked through it, nor drove.
+  // The box's front covers 125 voxels of 4 cm (0.4 x 0.5 m), 64 of them where the camera still looks from 0.7 m away.
+  // Low down, and at the edges, nothing ever looked through it, nor drove.
   const auto left_in = [&](float half_width_m, float low_m) {
     return MapPointsIn(folder.path() / "a/map.ply",
                        {Eigen::Vector3f(5.4f, -half_width_m, low_m), Eigen::Vector3f(7.0f, half_width_m, 0.5f)});
@@ -180,7 +180,7 @@ TEST(EmptyBattery, LeavesTheCarStandingWithAReserve) {
   EXPECT_GT(twin.world().drive().battery().charge(), 0.0);
 }
 
-// The 24 m straight, its end wall first seen from 22 m away: two and one unambiguous ranges off.
+// A straight corridor of 24 m. Its end wall is first seen from 22 m away: its range is wrapped twice, later once.
 TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
   const std::filesystem::path models = Home() / "models";
   TwinOptions options;
@@ -198,7 +198,8 @@ TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
   const auto watch = [&](const LoopState& state) {
     const double x_m = twin.world().T_world_base().translation().x();
     const double wall_ahead_m = 13.2 - x_m - 0.3;
-    for (const auto& frame : state.heard.depth)  // raw: the ghosts must be there for the test to mean anything
+    for (const auto& frame :
+         state.heard.depth)  // unfiltered; without ghosts in these frames the test would mean nothing
       if (std::abs(wall_ahead_m - 9.5) < 0.1) wrapped_m = frame->range_m[24 * 64 + 32];
     if (x_m > -10.5 && x_m < 10.0) slowest_m_s = std::min(slowest_m_s, twin.world().Speed_m_s());
     stop = x_m > 10.2;
@@ -209,7 +210,7 @@ TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
   EXPECT_NEAR(wrapped_m, 9.5 - UnambiguousRange_m(20e6), 0.3);
   EXPECT_GT(slowest_m_s, 0.45);
 
-  // Nothing of the map stands in the corridor's free middle.
+  // The map has nothing in the free middle of the corridor.
   int ghosts = 0, points = 0;
   const Pose T_world_map = FromXyYaw(-12.2, -9.5, 0.0);
   const VoxelMap map = loop.slam().BuildMap();
@@ -223,7 +224,7 @@ TEST(Ghosts, NeitherStopTheCarNorEnterTheMapOnTheStraight) {
   EXPECT_LE(ghosts, points / 1000);
 }
 
-// The same place and time, as an actor.
+// An actor at the same place and time.
 TEST(CorridorObstacle, StopsBeforeASphereToo) {
   const TemporaryFolder folder;
   const RunReport report = DriveScenario(
@@ -239,7 +240,7 @@ TEST(CorridorObstacle, StopsBeforeASphereToo) {
   EXPECT_GE(*m.distance_m, 9.0);
 }
 
-// A person who walks towards the car, waits before it, then passes it.
+// A person who walks towards the car, waits in front of it, then walks past it.
 TEST(CorridorVisitor, StopsStaysAndDrivesOnWithoutATouch) {
   const TemporaryFolder folder;
   const RunReport report = DriveScenario("corridor_visitor", folder.path() / "a", {}, 2, sim::Gl::kOff);

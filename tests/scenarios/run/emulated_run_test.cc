@@ -20,7 +20,7 @@ RunReport Drive(RobotKind robot, const std::filesystem::path& out, const std::ve
                       .out = out,
                       .robot = robot,
                       .hardware_file = {},
-                      .gl = Gl::kOff,  // drawing in software beside the run would ask a slow machine for too much
+                      .gl = Gl::kOff,  // software rendering beside the run would overload a slow machine
                       .threads = 2,
                       .pace = 0.0,
                       .progress = {}},
@@ -35,7 +35,7 @@ TEST(EmulatedRobot, DrivesTheCorridorWithTheVerdictOfTheTwin) {
   EXPECT_EQ(emulated.result.verdict, Verdict::kPass) << emulated.note;
   EXPECT_NEAR(*emulated.result.metrics.distance_m, *twin.result.metrics.distance_m, 2.0);
   EXPECT_LT(*emulated.result.metrics.ate_rmse_m, 0.2);
-  EXPECT_FALSE(emulated.result.hashes.state);  // paced by the clock: not the same bits twice
+  EXPECT_FALSE(emulated.result.hashes.state);  // real time: not the same bits twice
 }
 
 TEST(EmulatedRobot, SaysThatTheCamerasLibraryIsMissingBeforeAnythingMoves) {
@@ -90,7 +90,7 @@ TEST(HardwareFile, ReportsEveryFaultWithItsLine) {
   EXPECT_THROW(ReadHardwareFile(folder.path() / "none.yaml"), InputError);
 }
 
-// Each device is told by itself, none hides another.
+// Every faulty device is reported; none hides another.
 TEST(HardwareDevices, AreEachToldByName) {
   HardwareConfig config;
   config.drive.serial.port = "/dev/merlin-none-1";

@@ -1,4 +1,4 @@
-// Runs of a car that others described: what its user should know of it reaches the report.
+// Runs of a car that others described: notes for its user must reach the report.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ std::atomic<bool> never{false};
 
 std::string Without(std::string text, const std::string& line) { return text.erase(text.find(line), line.size()); }
 
-// A rover that neither sees colours nor has a compass, its left kingpin 1.6 mm ahead of the right one.
+// A rover without colour camera and compass, with its left kingpin 1.6 mm ahead of the right one.
 void WriteBlindRover(const ForeignCar& files) {
   WriteRover(files);
   std::string urdf = RoverUrdf();

@@ -1,5 +1,5 @@
-// Runs that cannot succeed say so within 20 s, and why: a camera that cannot map, settings in which nothing is measured, a
-// room without anything to hold on to, a car that is blocked.
+// Runs that cannot succeed say so within 20 s, and why: a camera that cannot map, settings in which nothing is
+// measured, a room without anything to hold on to, a car that is blocked.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,7 +15,7 @@ std::atomic<bool> never_hopeless{false};
 
 class HopelessRun : public testing::Test {
  protected:
-  // A lap's scenario on a bare floor with walls around, from which the settings depart.
+  // The scenario of a lap, on a bare floor with walls around it; each test changes some of its settings.
   RunReport Run(std::vector<std::string> sets, const std::string& room = kWalls) {
     std::ofstream(folder_.path() / "room.xml") << "<mujoco><worldbody>" << room << "</worldbody></mujoco>";
     for (const char* set :

@@ -19,13 +19,13 @@ namespace {
 std::atomic<bool> never{false};
 constexpr std::int16_t kFull = 32767;
 
-// A wall square ahead, and two along the way: a corridor of 2 m that ends.
+// A facing wall, and two along the path: a corridor of 2 m that ends.
 constexpr char kRoom[] = R"(<geom name="floor" type="plane" size="20 20 1"/>
   <geom name="end" type="box" size="0.1 5 2" pos="6.1 0 2"/>
   <geom name="left" type="box" size="8 0.1 2" pos="0 1.1 2"/>
   <geom name="right" type="box" size="8 0.1 2" pos="0 -1.1 2"/>)";
 
-// One drive: a script moves the stick at run times, a picture of the car is kept at every tick.
+// One drive: a script moves the stick at given run times; the state is recorded at every tick.
 class ManualDrive : public ::testing::Test {
  protected:
   struct Moment {
@@ -87,7 +87,7 @@ TEST_F(ManualDrive, FollowsTheStickAndStandsWhenItIsLetGo) {
   EXPECT_EQ(At(1.75).driver, Driver::kManual);
   EXPECT_GT(At(2.15).steering_rad, 0.1);
   EXPECT_GT(At(2.15).yaw_rad, 0.02) << "stick to the left, car to the left";
-  // A tick to notice, then 0.8 m/s at 2 m/s2.
+  // A tick of delay, then from 0.8 m/s at 2 m/s2.
   EXPECT_NEAR(At(2.8).speed_m_s, 0.0, 0.01);
   EXPECT_EQ(At(2.8).driver, Driver::kNobody);
   EXPECT_LT(At(4.5).speed_m_s, -0.7) << "stick back, car back";
@@ -103,7 +103,7 @@ TEST_F(ManualDrive, StopsBeforeTheWallUnlessItIsOverridden) {
   Drive(14.0, {{0.5, [&] { pipe_.Axis(1, -kFull); }},
                {11.0, [&] { pipe_.Button(Stick::kOverrideButton, true); }},
                {11.6, [&] { pipe_.Button(Stick::kOverrideButton, false); }}});
-  // The wall stands at 6.0 m, half a metre is kept before the bumper.
+  // The wall is at 6.0 m; the car keeps half a metre between it and the bumper.
   const double front_m = FootprintOf(sim::Merlin()).front_m;
   EXPECT_NEAR(At(10.9).speed_m_s, 0.0, 0.01);
   EXPECT_EQ(At(10.9).driver, Driver::kObstacleStop);

@@ -1,4 +1,4 @@
-// What happens when something breaks in the middle of a run: the car stands, the reason is told, the rest is written.
+// Faults in the middle of a run: the car stops, the reason is reported, the remaining files are written.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -23,7 +23,7 @@ std::atomic<bool> never_stop{false};
 constexpr char kCorridor[] = R"(<geom name="floor" type="plane" size="0 0 1"/>
   <geom type="box" size="20 .1 1" pos="0 1.1 1"/> <geom type="box" size="20 .1 1" pos="0 -1.1 1"/>)";
 
-// Devices of the twin, each with a hook that may throw before it is used.
+// The twin's devices, each with a hook that may throw before it is used.
 using Hook = std::function<void()>;
 
 struct HookedDepth final : DepthCamera {
@@ -77,14 +77,14 @@ class BrokenRun : public ::testing::Test {
     twin_.emplace(options);
   }
 
-  // Throws this from the run's third second on.
+  // Throws this from the third second of the run on.
   template <class Thrown>
   Hook Late(Thrown thrown) {
     return [this, thrown] {
       if (twin_->robot().clock->Now() > std::chrono::seconds(3)) throw thrown;
     };
   }
-  // Drives ahead by hand until something throws. What that was is returned, as type and text.
+  // Drives ahead by manual command until something throws. Returns type and text of the exception.
   std::string Drive(
       const Hook& depth, const Hook& compass, const Hook& poll, const Hook& send, const Hook& wait,
       const Hook& observe = [] {}) {
@@ -133,7 +133,7 @@ TEST_F(BrokenRun, StandsWhenTheDepthCameraThrows) {
   ExpectStanding();
 }
 
-TEST_F(BrokenRun, StandsWhenADeviceThrowsWhatIsNoException) {
+TEST_F(BrokenRun, StandsWhenADeviceThrowsSomethingOtherThanAnException) {
   EXPECT_EQ(Drive(well_, Late(42), well_, well_, well_), "device: compass: its driver threw an unknown exception");
   ExpectStanding();
 }
@@ -143,13 +143,13 @@ TEST_F(BrokenRun, StandsWhenTheDriveNoLongerTellsItsState) {
   ExpectStanding();
 }
 
-// The last command expires.
+// Time after which the last command has expired.
 TEST_F(BrokenRun, StandsWhenTheDriveNoLongerTakesCommands) {
   EXPECT_EQ(Drive(well_, well_, well_, Late(std::runtime_error("deaf")), well_), "device: drive: deaf");
   ExpectStanding();
 }
 
-TEST_F(BrokenRun, StandsWhenWhoeverLooksOnThrows) {
+TEST_F(BrokenRun, StandsWhenTheObserverThrows) {
   EXPECT_EQ(Drive(well_, well_, well_, well_, well_, Late(MachineError("disk full"))), "machine: disk full");
   ExpectStanding();
 }
@@ -165,7 +165,7 @@ TEST_F(BrokenRun, TellsTheFirstFaultOfSeveral) {
             "device: drive: second");  // the drive is asked before the frame is shown
 }
 
-// A scenario in a room of the test's own.
+// A scenario in a room that the test makes.
 RunOptions OptionsFor(const std::filesystem::path& room, const std::filesystem::path& out, double duration_s) {
   RunOptions options{
       .name = "broken",
@@ -192,7 +192,7 @@ std::string What(const std::exception_ptr& error) {
   return "";
 }
 
-// Something far above, pushed up by a force that grows with its way: e^(4 t), 1e9 m after five seconds.
+// A body far above, pushed up by a force proportional to its displacement: e^(4 t), 1e9 m after five seconds.
 constexpr char kRunaway[] = R"(<body pos="0 0 50">
     <joint type="slide" axis="0 0 1" stiffness="-16" springref="-1" damping="0"/><geom type="sphere" size=".1" mass="1"/></body>)";
 
@@ -215,7 +215,7 @@ TEST(BadState, EndsTheRunAsOurOwnFaultWithEveryFile) {
   EXPECT_NE(Contents(folder.path() / "a/result.json").find("\"verdict\": \"fail\""), std::string::npos);
 }
 
-// A limit to a file's size is a full disk for large files.
+// For large files, a limit on the file size acts like a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(::signal(SIGXFSZ, SIG_IGN)) {
@@ -233,7 +233,7 @@ class FileSizeLimit {
   sighandler_t handler_;
 };
 
-TEST(FullDisk, LosesTheFilesThatDoNotFitAndNothingElse) {
+TEST(FullDisk, LosesOnlyTheFilesThatDoNotFit) {
   const TemporaryFolder folder;
   const auto out = folder.path() / "a";
   RunOptions options = OptionsFor("corridor_26x21", out, 4);
@@ -271,7 +271,7 @@ TEST(Progress, DoesNotStopTheCarWhereNobodyReadsIt) {
   EXPECT_EQ(report.result.verdict, Verdict::kNotJudged) << report.result.fault;
 }
 
-// By hand, out of a room that is open at its end.
+// Drives by manual command out of a room that is open at its end.
 TEST(LostCar, FailsTheRunWithTheReason) {
   const TemporaryFolder folder;
   const sim::TemporaryFile room("room.xml",
@@ -286,7 +286,7 @@ TEST(LostCar, FailsTheRunWithTheReason) {
   EXPECT_FALSE(report.error);
   EXPECT_NE(report.result.fault.find("s the car left the room: it was at x 2.00 m, y "), std::string::npos)
       << report.result.fault;
-  EXPECT_NEAR(*report.result.metrics.distance_m, 2.0, 0.5);  // and what it takes to stand
+  EXPECT_NEAR(*report.result.metrics.distance_m, 2.0, 0.5);  // plus the stopping distance
   EXPECT_NE(Contents(folder.path() / "a/result.json").find(report.result.fault), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "a/map.ply"));
 }

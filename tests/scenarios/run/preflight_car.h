@@ -1,5 +1,5 @@
-// A car of plain arithmetic for the pre-flight check: it has the commanded speed and steering at once, its devices deliver
-// at their rates, and each can be made to lie.
+// A car of simple arithmetic for the pre-flight check. It reaches the commanded speed and steering at once, its devices
+// deliver at their rates, and each can be made to report something wrong.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace merlin {
 
-// One that owes so many measurements a second, and can be switched off.
+// A device that delivers a given number of measurements a second, and can be switched off.
 class Rate {
  public:
   explicit Rate(double hz) : told_hz(hz), true_hz(hz) {}
@@ -42,7 +42,7 @@ class PreflightCar {
     description.wheel_radius_m = 0.05;
     description.drivetrain.voltage_max_v = 12.0;
     description.drivetrain.gear = 1.0;
-    // So that a count is a millimetre.
+    // One count is a millimetre.
     description.drivetrain.encoder_counts_per_motor_turn = 1000;
     description.wheel_radius_m = 1000 * kMetresPerCount / (2.0 * M_PI);
   }
@@ -56,8 +56,8 @@ class PreflightCar {
   Rate drive{50.0}, compass{12.5}, depth{20.0}, color{10.0};
   double battery_v = 12.5, roll_rad = 0.01, pitch_rad = -0.01;
   double servo_reports_rad = NAN;  // instead of what was commanded
-  double compass_turns = 1.0;      // a radian of the car, by the compass
-  double wheels_turn = 1.0;        // of what was commanded
+  double compass_turns = 1.0;      // turn by the compass over true turn
+  double wheels_turn = 1.0;        // motion over command
   bool ignores_expiry = false;     // drives on when commands stop
   bool drive_throws = false;
   bool same_range = false, no_range = false, one_color = false;
@@ -144,7 +144,7 @@ class PreflightCar {
       if (!stamp) return std::nullopt;
       ColorFrame frame;
       frame.stamp = *stamp, frame.width = frame.height = 8;
-      for (int i = 0; i < 64; ++i)  // one colour, but not one grey
+      for (int i = 0; i < 64; ++i)  // a single colour, but not grey
         for (const int channel : {10, 90, 200})
           frame.bgr.push_back(static_cast<std::uint8_t>(channel + (car->one_color ? i % 2 : i / 2)));
       return frame;

@@ -26,7 +26,7 @@ class EmulatedPreflight : public ::testing::Test {
     options_.compass = TwinOptions::Compass{};
     options_.end = Time::max();
   }
-  // Switches the car on and asks for what the check says: at rest, and moving if that found nothing.
+  // Switches the car on and returns the faults of the check at rest; if there are none, those of the check in motion.
   std::vector<std::string> Check() {
     EmulatedRobot emulated(options_, sockets_.path(), clock_);
     emulated.Start();
@@ -59,7 +59,7 @@ TEST_F(EmulatedPreflight, FindsNothingWrongAndBringsTheCarBack) {
   EXPECT_LT(T_world_base_.translation().head<2>().norm(), 0.1);
 }
 
-// An empty one has 10 V (sim/drive/battery.h).
+// An empty battery has 10 V (sim/drive/battery.h).
 TEST_F(EmulatedPreflight, FindsAnEmptyBatteryBeforeTheCarMoves) {
   options_.world.drivetrain.battery = {.capacity_ah = 0.05, .charge = 0.0};
   const std::vector<std::string> faults = Check();

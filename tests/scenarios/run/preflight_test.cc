@@ -55,7 +55,7 @@ TEST_F(Preflight, FindsADeviceThatDeliversNothingWhetherItsRateIsKnownOrNot) {
     car_.depth.true_hz = 0.0;
     EXPECT_EQ(AtRest(), Faults{"the depth camera delivers nothing"});
   }
-  car_.depth.true_hz = 3.0;  // of an unknown rate anything will do
+  car_.depth.true_hz = 3.0;  // with an unknown rate any count is accepted
   EXPECT_EQ(AtRest(), Faults{});
 }
 
@@ -155,7 +155,7 @@ TEST_F(Preflight, FindsACompassThatTurnsTheOtherWayOrNotAtAll) {
   for (const double turns : {-1.0, 0.0, 2.0}) {
     car_.compass_turns = turns;
     const Faults faults = Moving();
-    ASSERT_EQ(faults.size(), 2u) << turns;  // one an arc
+    ASSERT_EQ(faults.size(), 2u) << turns;  // one per arc
     EXPECT_TRUE(faults[0].starts_with("on an arc to the left the wheels turned the car by +")) << faults[0];
     EXPECT_TRUE(faults[1].starts_with("on an arc to the right the wheels turned the car by -")) << faults[1];
   }

@@ -1,5 +1,5 @@
-// Every scenario that we ship starts, runs for three seconds and leaves its files. Whether it passes is asked of whole
-// runs, by `merlin test --all`.
+// Every scenario that we ship starts, runs for three seconds and writes its files. `merlin test --all` runs them to the
+// end and tests whether they pass.
 #include <gtest/gtest.h>
 
 #include "scenarios/config/names.h"

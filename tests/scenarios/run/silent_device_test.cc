@@ -1,4 +1,4 @@
-// What the loop and the run make of devices that fall silent under way, in the twin.
+// How the loop and the run react to devices that fall silent during a drive, in the twin.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ class SilentDevice : public ::testing::Test {
     muted_.emplace(twin_->robot());
     loop_.emplace(muted_->robot(), options.world.car, PerceptionConfig{}, SlamConfig{}, Task{}, PilotConfig{});
   }
-  // The pilot drives. A fault happens after kFault, for good or until it ends.
+  // Drives with the pilot. A fault begins after kFault and lasts for good, or until it ends.
   LoopEnd Drive(const std::function<void(bool broken)>& fault, Time until = Time::max()) {
     return loop_->Run(not_stopped_, [&](const LoopState& state) {
       fault(state.now >= kFault && state.now < until);
@@ -58,7 +58,7 @@ class SilentDevice : public ::testing::Test {
   const std::atomic<bool> not_stopped_{false};
 };
 
-// The depth camera ticks at 20 Hz: the last frame arrives at kFault, 0.5 s later is the last tick that is forgiven.
+// The depth camera delivers at 20 Hz. The last frame arrives at kFault; 0.5 s later is the last tick that is tolerated.
 TEST_F(SilentDevice, StopsTheCarHalfASecondAfterTheLastFrame) {
   EXPECT_EQ(Drive([this](bool broken) { muted_->depth.muted = broken; }), LoopEnd::kDeviceLost);
   EXPECT_EQ(loop_->state().stop, "the depth camera has been silent for 0.6 s");
@@ -72,7 +72,7 @@ TEST_F(SilentDevice, StopsTheCarThatNoLongerTellsItsState) {
   ExpectStanding();
 }
 
-// Frames go on coming, and their camera says that they are worth nothing.
+// Frames still arrive, but their camera reports that they are unusable.
 TEST_F(SilentDevice, StopsTheCarWhoseDepthCameraSaysThatItIsFaulty) {
   EXPECT_EQ(Drive([this](bool broken) {
               if (broken) muted_->depth.status = {.health = DeviceStatus::Health::kFaulty, .since = kFault};
@@ -105,7 +105,7 @@ TEST_F(SilentDevice, NotesWhenTheCompassIsBack) {
   EXPECT_NEAR(Seconds(loop_->state().outages[0].until), 6.0, 0.11);
 }
 
-// One state a tick, whole and consistent, and a copy of it stays as it was.
+// One complete and consistent state per tick; a copy of it does not change.
 TEST_F(SilentDevice, TellsEachTickAsACopy) {
   std::vector<LoopState> states;
   loop_->Run(not_stopped_, [&](const LoopState& state) {
@@ -138,7 +138,7 @@ TEST_F(SilentDevice, TellsEachTickAsACopy) {
   EXPECT_GT(counts, 100);
 }
 
-// The plug of the twin, one of whose devices falls silent at kFault.
+// The plug of the twin with one device that falls silent at kFault.
 class PlugThatFails final : public Plug {
  public:
   PlugThatFails(std::unique_ptr<Plug> plug, bool compass)

@@ -1,4 +1,4 @@
-// The calibrated steering offset, between what the stack means and what the servo is told.
+// The calibrated steering offset between the stack's wheel angle and the servo's command.
 #include <gtest/gtest.h>
 
 #include "scenarios/run/drive_loop.h"
@@ -30,11 +30,11 @@ struct RecordingDrive final : Drive {
   std::vector<DriveCommand> sent;
 };
 
-TEST(SteeringOffset, IsTakenOffOnceOnTheWayToTheServo) {
+TEST(SteeringOffset, IsSubtractedExactlyOnceBeforeTheServo) {
   CarDescription car;
   car.wheelbase_m = 0.33;
   car.steering_max_rad = 0.4;
-  car.steering_offset_rad = 0.05;  // the wheels stand left of what the servo reports
+  car.steering_offset_rad = 0.05;  // the wheels point further left than the servo reports
   ShortClock clock;
   DarkCamera depth;
   RecordingDrive drive;

@@ -1,4 +1,4 @@
-// Turned cameras and a turned car, from the twin's world to the stack's points.
+// Panned cameras and a car on a turntable, from the twin's world to the stack's points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,13 +18,13 @@ namespace {
 
 std::atomic<bool> never{false};
 
-// Three walls about the car, 3 m from its base ahead and 2 m at the sides.
+// Three walls around the car: 3 m ahead of its base and 2 m to its sides.
 constexpr char kRoom[] = R"(<geom name="floor" type="plane" size="20 20 1"/>
   <geom name="ahead" type="box" size="0.1 8 2" pos="3.1 0 2"/>
   <geom name="left" type="box" size="8 0.1 2" pos="0 2.1 2"/>
   <geom name="right" type="box" size="8 0.1 2" pos="0 -2.1 2"/>)";
 
-// Of a point of the world from the nearest of those walls and the floor.
+// Distance of a point of the world from the nearest of those walls and the floor.
 double FromRoom_m(const Eigen::Vector3d& p) {
   return std::min({std::abs(p.x() - 3.0), std::abs(p.y() - 2.0), std::abs(p.y() + 2.0), std::abs(p.z())});
 }
@@ -50,7 +50,7 @@ Rig RigOf(const Robot& robot) {
           .on_turntable = robot.turntable != nullptr};
 }
 
-// Runs for a while and gives every observation to see.
+// Runs for a while and calls a function with every observation.
 template <class See>
 void Watch(Twin& twin, double seconds, const See& see) {
   const Robot robot = twin.robot();
@@ -74,7 +74,7 @@ void Watch(Twin& twin, double seconds, const See& see) {
   }
 }
 
-// In full swing: the angle of 20 ms before or after would put points of the wall 0.2 m off.
+// While the cameras turn at full speed, the angle of 20 ms earlier or later would misplace points of the wall by 0.2 m.
 TEST(Pan, PutsPointsWhereTheyAreWhileTheCamerasTurn) {
   const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
   TwinOptions options = Options(room);
@@ -85,7 +85,7 @@ TEST(Pan, PutsPointsWhereTheyAreWhileTheCamerasTurn) {
     twin.robot().pan->Send(angle_rad);
     Watch(twin, 1.5, [&](const Observation& observation) {
       for (const Point& point : observation.points_base) {
-        const Eigen::Vector3d p = point.position.cast<double>();  // the car stands at the origin
+        const Eigen::Vector3d p = point.position.cast<double>();  // the car is at the origin
         ++points;
         off += FromRoom_m(p) > 0.05;
         on_the_left += std::abs(p.y() - 2.0) < 0.05 && std::abs(p.x()) < 1.0;
@@ -99,7 +99,7 @@ TEST(Pan, PutsPointsWhereTheyAreWhileTheCamerasTurn) {
   EXPECT_GT(on_the_right, 1000);
 }
 
-TEST(Turntable, TellsTheOdometryWhatTheWheelsDoNotKnow) {
+TEST(Turntable, GivesTheOdometryTheTurnThatTheWheelsDoNotMeasure) {
   const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
   TwinOptions options = Options(room);
   options.world.turntable_rate_rad_s = 1.0;
@@ -120,7 +120,7 @@ TEST(Turntable, TellsTheOdometryWhatTheWheelsDoNotKnow) {
   EXPECT_GT(frames, 80);
 }
 
-TEST(Turntable, IsTheTwinsAlone) {
+TEST(Turntable, ExistsOnlyInTheTwin) {
   const TemporaryFolder folder;
   RunOptions options{.name = "room_turn_180",
                      .scenario = ReadScenario("room_turn_180", {}),
