@@ -59,7 +59,7 @@ TEST(ForEachLine, IgnoresAByteOrderMarkAtTheStartOnly) {
   ForEachLine("\xEF\xBB\xBF", add);
   EXPECT_TRUE(lines.empty());
   ForEachLine("\xEF\xBB\xBF#\n\xEF\xBB\xBFx", add);
-  ForEachLine("\xEF\xBB", add);  // a part of it is none
+  ForEachLine("\xEF\xBB", add);  // an incomplete mark does not count
   EXPECT_EQ(lines, (std::vector<std::string>{"#", "\xEF\xBB\xBFx", "\xEF\xBB"}));
 }
 

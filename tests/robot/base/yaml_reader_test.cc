@@ -47,7 +47,7 @@ void Visit(Visitor& v, Toy& c) {
 
 struct Outcome {
   Toy toy;
-  std::string said;  // without the file's name
+  std::string said;  // without the file name
 };
 
 Outcome Read(const std::string& text, const std::vector<std::string>& sets = {}) {
@@ -117,7 +117,7 @@ TEST(YamlReader, NamesEveryFaultWithItsLineInTheOrderOfTheKeys) {
   EXPECT_EQ(outcome.toy.wheel.radius_m, 0.1);  // a wrong value leaves what was there
 }
 
-TEST(YamlReader, RefusesNumbersThatAreNone) {
+TEST(YamlReader, RejectsTextThatIsNotANumber) {
   for (const std::string number : {".nan", "", "fast", "1.0 m", "[1]", "{a: 1}", "true"})
     EXPECT_NE(Read("wheel: {radius_m: " + number + "}\n").said.find(":1: wheel.radius_m: expected a number in [0, 1]"),
               std::string::npos)

@@ -1,4 +1,4 @@
-// The cameras' data sheets: the numbers of ours, and the faults that the readers name.
+// The data sheets of the cameras: the values of ours, and the faults that the readers report.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -78,7 +78,7 @@ TEST_F(Description, EverySheetInTheFolderIsListedInTheTable) {
   EXPECT_EQ(found, listed);
 }
 
-// One millisecond at 20 MHz is what a scenario asks for when it says nothing.
+// The default of a scenario is one millisecond at 20 MHz.
 TEST_F(Description, EveryDepthCameraTakesTheCommonSettingsAtItsFullRate) {
   for (const Model42& model : kTable42) {
     SCOPED_TRACE(model.name);

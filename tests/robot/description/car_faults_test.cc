@@ -1,4 +1,4 @@
-// Nothing of a URDF vanishes without a word: urdfdom drops the rest of a link at the first part it does not understand.
+// urdfdom drops the rest of a link at the first part it does not understand. No part may vanish without a message.
 #include "tests/robot/description/car_text.h"
 
 namespace merlin {
@@ -8,7 +8,7 @@ using namespace car_text;
 
 constexpr char kBody[] = "<collision><geometry><box size=\"0.6 0.25 0.12\"/></geometry></collision>";
 
-// The rover whose body touches with this instead of its box, on a line of its own.
+// The rover with this collision shape, on a line of its own, instead of the box of its body.
 std::string WithCollision(const std::string& collision) { return Replaced(RoverUrdf(), kBody, "\n" + collision); }
 
 TEST(CarFaults, RefusesAShapeThatUrdfDoesNotKnow) {
@@ -56,7 +56,7 @@ TEST(CarFaults, RefusesAShapeWithoutItsSize) {
   expect("<mesh filename=\"wheel.obj\" scale=\"1 0 1\"/>", "nowhere 0");
 }
 
-// A material without a name, or an <inertia> that lacks a number, takes all that follows with it.
+// A material without a name, or an incomplete <inertia>, makes urdfdom drop everything after it.
 TEST(CarFaults, RefusesWhatEndsUrdfdomsReadingOfALink) {
   ExpectFault(WithCollision("<visual><geometry><sphere radius=\"1\"/></geometry><material/></visual>"),
               {"link 'chassis'", "<material> needs 'name'"});
@@ -85,7 +85,7 @@ TEST(CarFaults, ReadsNumbersWithWhiteSpaceAroundThem) {
   EXPECT_EQ(car.links[1].collision[0].size_m, Eigen::Vector3d(0.6, 0.25, 0.12));
 }
 
-// Simulators, planners and old tools put their own into URDFs, with values of any kind.
+// Simulators, planners and old tools add elements of their own to URDFs, with values of any kind.
 TEST(CarFaults, IgnoresElementsThatUrdfDoesNotDefine) {
   std::string urdf = WithCollision(
       "<verbose value=\"Yes\"/><self_collide value=\"\"/><collision><verbose value=\"Yes\"/><contact_coefficients "

@@ -1,4 +1,4 @@
-// What ReadCar derives from the links: lengths, angles, sensor frames; and the cars that it refuses for them.
+// What ReadCar derives from the links: lengths, angles, sensor frames; and the cars that it rejects because of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -145,7 +145,7 @@ TEST_F(Description, RefusesWheelsThatMakeNoCar) {
          {"car.urdf:", "wheel_front_right", "radius", "0.05 m"});
 }
 
-// Left and right exchanged in the roles would turn the car over; so would front and rear.
+// Swapping left and right in the roles would turn the car upside down; so would swapping front and rear.
 TEST_F(Description, RefusesWheelsOnTheWrongSide) {
   std::string text = merlin_;
   text = Replaced(text, "<child link=\"wheel_rear_left\"/><origin xyz=\"0 0.13",

@@ -1,4 +1,4 @@
-// The links, joints and shapes that ReadCar takes from a URDF, and the faults that it names.
+// The links, joints and shapes that ReadCar takes from a URDF, and the faults that it reports.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -126,8 +126,8 @@ TEST_F(Description, RefusesThreeWheelsAndNoWheels) {
              {"needs a joint 'wheel_front_left_joint'"});
 }
 
-// Whatever number of the file is none: one sentence that names the file.
-TEST_F(Description, RefusesEveryNumberThatIsNone) {
+// Wherever a number is expected and none is found, one sentence names the file.
+TEST_F(Description, RejectsEveryNumberThatIsNotOne) {
   const std::string text = std::regex_replace(merlin_, std::regex("<!--[^]*?-->"), "");
   const std::regex number("[ \"]([-+0-9.e]*[0-9])(?=[ \"])");
   const std::size_t start = text.find("<drivetrain");

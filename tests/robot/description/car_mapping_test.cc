@@ -11,7 +11,7 @@ namespace {
 
 using namespace car_text;
 
-// What the rover's description says with these two files; empty if it is accepted.
+// The message about the rover's description with these two files; empty if it is accepted.
 std::string RoverError(const std::string& urdf, const std::string& mapping) {
   const ForeignCar car;
   WriteRover(car);
@@ -119,7 +119,7 @@ TEST(CarMapping, RefusesOneJointInTwoRoles) {
                 {"car.mapping.yaml:8", "depth_camera_frame: stands beside"});
 }
 
-TEST(CarMapping, RefusesWhatIsNoMapping) {
+TEST(CarMapping, RejectsAFileThatIsNotAMapping) {
   EXPECT_NE(RoverError(RoverUrdf(), "").find("no map of keys; expected a car's mapping"), std::string::npos);
   EXPECT_NE(RoverError(RoverUrdf(), "- a\n- b\n").find("no map of keys; expected a car's mapping"), std::string::npos);
   EXPECT_NE(RoverError(RoverUrdf(), "a: [1\nb: }").find("broken YAML"), std::string::npos);

@@ -1,4 +1,4 @@
-// The meshes of a car: how ReadCar finds them, and that they fit the shapes that touch.
+// The meshes of a car: how ReadCar finds them, and that they match the collision shapes.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -40,7 +40,7 @@ TEST_F(Description, NamesAMeshThatIsNone) {
              {"car.urdf:", "link 'pc'", "flat.stl is flat"});
 }
 
-// The files are small, few triangles, and what their script makes.
+// The files are small, have few triangles, and are exactly what their script makes.
 TEST_F(Description, MeshesAreLightAndMadeByTheirScript) {
   const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
   std::size_t triangles = 0;
@@ -62,7 +62,7 @@ TEST_F(Description, MeshesAreLightAndMadeByTheirScript) {
   EXPECT_LT(bytes, 1'000'000u);
 }
 
-// What is seen is as large as what touches.
+// What is seen is as large as what collides.
 TEST_F(Description, MeshesFitTheShapesThatTouch) {
   const CarDescription car = ReadCar(Model("merlin/merlin.urdf"));
   const auto extent = [](const CarLink& link) {

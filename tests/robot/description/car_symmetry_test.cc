@@ -1,4 +1,4 @@
-// Axles that are drawn a little off, knuckles without limits, sensors that a car does not have.
+// Axles with small errors, knuckles without limits, and sensors that a car does not have.
 #include <cmath>
 
 #include "tests/robot/description/car_text.h"

@@ -1,4 +1,4 @@
-// A rover's URDF with changes, and what is said of it.
+// A rover's URDF with changes, and the messages about it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ inline std::string At(const std::string& text, const std::string& part) {
   return "car.urdf:" + std::to_string(LineOf(text, part)) + ": ";
 }
 
-// The rover with this URDF and mapping in a folder of its own.
+// The rover with this URDF and mapping in a temporary folder.
 class Rover {
  public:
   explicit Rover(const std::string& urdf, const std::string& mapping = kRoverMapping) {
@@ -41,7 +41,7 @@ class Rover {
   }
   const ForeignCar& files() const { return files_; }
   CarDescription Read() const { return ReadCar(files_.urdf()); }
-  // What the InputError says; empty if there is none.
+  // The message of the InputError; empty if there is none.
   std::string Error() const {
     try {
       Read();
@@ -60,7 +60,7 @@ inline void ExpectSays(const std::string& text, const std::vector<std::string>& 
     EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' not in: " << text;
 }
 
-// One fault, that says all this.
+// Expects one fault whose message contains all of these.
 inline void ExpectFault(const std::string& urdf, const std::vector<std::string>& parts) {
   const std::string text = Rover(urdf).Error();
   ExpectSays(text, parts);

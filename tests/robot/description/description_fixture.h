@@ -25,7 +25,7 @@ class Description : public testing::Test {
     std::ifstream in(file);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  // What the InputError of a call says; empty if there is none.
+  // The message of the InputError that a call throws; empty if there is none.
   template <class Call>
   static std::string ErrorOf(Call call) {
     try {

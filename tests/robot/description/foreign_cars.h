@@ -12,7 +12,7 @@
 
 namespace merlin {
 
-// A folder of its own, gone with the object.
+// A temporary folder, removed with the object.
 class ForeignCar {
  public:
   ForeignCar() {

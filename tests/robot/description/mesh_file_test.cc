@@ -28,7 +28,7 @@ class MeshFile : public testing::Test {
   std::vector<CarMesh> Read(const std::string& name, const std::string& bytes) const {
     return ReadMesh(File(name, bytes));
   }
-  // What the InputError says; empty if there is none.
+  // The message of the InputError; empty if there is none.
   std::string ErrorOf(const std::string& name, const std::string& bytes) const {
     try {
       Read(name, bytes);
@@ -113,7 +113,7 @@ TEST_F(MeshFile, TakesColoursWhereTheFileHasThem) {
   EXPECT_EQ(parts[1].rgba, (std::array<float, 4>{0, 1, 0, 1}));
 }
 
-TEST_F(MeshFile, RefusesWhatIsNoMesh) {
+TEST_F(MeshFile, RejectsAFileThatIsNotAMesh) {
   EXPECT_THROW(ReadMesh("/nowhere/x.obj"), InputError);
   ExpectRefused("x.png", "x", "not a mesh format that can be read");
   for (const std::string ending : {"obj", "stl", "dae", "gltf", "glb"}) {
@@ -141,7 +141,8 @@ TEST_F(MeshFile, RefusesCountsThatLie) {
   ExpectRefused("lie.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4000000000\n", "");
 }
 
-// assimp 5.2 refuses a vertex more than the file has room for; 5.4 reads one from the bytes behind, which no triangle names.
+// assimp 5.2 refuses a vertex more than the file has room for; 5.4 reads one from the bytes behind, which no triangle
+// names.
 TEST_F(MeshFile, TakesNoVertexThatOnlyItsCountTellsOf) {
   const std::string lie = mesh_text::Glb({.box = {1, 3, 2}, .claimed = "9"});
   if (ErrorOf("lie.glb", lie).empty())
@@ -181,7 +182,7 @@ TEST_F(MeshFile, RefusesTooManyTriangles) {
   ExpectRefused("many.stl", stl, "too many triangles");
 }
 
-// Bytes changed, cut and doubled at random: whatever comes, it is a mesh or one sentence.
+// Bytes changed, cut and repeated at random: the result is always a mesh or one sentence.
 TEST_F(MeshFile, SurvivesMutatedFiles) {
   const std::map<std::string, std::string> seeds{
       {"m.obj", mesh_text::Obj({})},       {"t.stl", mesh_text::StlText({})},

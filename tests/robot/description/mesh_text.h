@@ -1,4 +1,4 @@
-// Mesh files written by hand for tests: the same box in every format, and in every way to err.
+// Mesh files written by hand for tests: the same box in every format, and in many invalid forms.
 #pragma once
 
 #include <fmt/format.h>

@@ -106,7 +106,7 @@ TEST(Compass3dmLine, TellsSilenceGarbageAndAMissingPort) {
   EXPECT_EQ(line.host.status().health, Health::kAbsent);
 }
 
-// Halves, replies twice, and replies that come a poll too late: no reading of them, or the very one that was asked for.
+// Partial replies, repeated replies and replies one poll too late give no reading, or exactly the one asked for.
 TEST(Compass3dmLine, NeverTakesAPartialADoubledOrALateReplyForAnother) {
   for (const int kind : {0, 1, 2}) {
     CompassLine line;
@@ -140,7 +140,7 @@ TEST(Compass3dmLine, NeverTakesAPartialADoubledOrALateReplyForAnother) {
   }
 }
 
-TEST(Compass3dmEmulator, HeedsOnlyAQuestionAskedInOrderAndInTime) {
+TEST(Compass3dmEmulator, AnswersOnlyARequestInTheRightOrderAndTime) {
   Compass3dmEmulator device({}, [] { return CompassReading{}; });
   device.Receive(Time(0), Bytes{0xC0});  // not in poll mode
   EXPECT_EQ(device.next(), Time::max());

@@ -83,7 +83,7 @@ TEST(DepthWire, WaitsForTheRestOfAMessage) {
   EXPECT_EQ(Decode(Concatenated(whole, {1, 2, 3})).bytes, whole.size());
 }
 
-TEST(DepthWire, CallsGarbageWhatIsNoneOfItsMessages) {
+TEST(DepthWire, ReportsBytesThatAreNoMessageAsGarbage) {
   const auto with = [](std::size_t place, std::uint8_t byte) {
     Bytes bytes = Encode(SmallFrame());
     bytes[place] = byte;

@@ -1,5 +1,5 @@
-// The twin behind the real drivers against the conformance suite: the same promises, over serial lines, a maker's library
-// and a stream, in real time.
+// The twin behind the real drivers against the conformance suite: the same promises over serial lines, a vendor's
+// library and a stream, in real time.
 #include <gtest/gtest.h>
 
 #include <filesystem>

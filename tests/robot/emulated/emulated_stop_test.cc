@@ -1,5 +1,5 @@
-// The twin's car behind the emulated microcontroller, in its own time: whatever befalls the line while the stack goes
-// on commanding, the motor is braked within 200 ms and the car stands within 0.2 s + v / (2 m/s^2).
+// The twin's car behind the emulated microcontroller, in simulated time: whatever happens to the line while the stack
+// keeps commanding, the motor is braked within 200 ms and the car stands within 0.2 s + v / (2 m/s^2).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -86,7 +86,7 @@ TEST_P(EmulatedStop, BrakesWithin200MillisecondsAndStandsInTimeWhateverHappens) 
   }
 }
 
-// And when the trouble is over it drives again, with the next good command.
+// When the fault is over, it drives again with the next good command.
 TEST_P(EmulatedStop, DrivesAgainWhenTheTroubleIsOver) {
   for (const Trouble& trouble : kTroubles) {
     SCOPED_TRACE(trouble.name);
@@ -126,7 +126,7 @@ TEST(EmulatedCarLine, HugeSpeedsAreTheCarsOwnAndEndLikeAnyOther) {
   EXPECT_LT(std::abs(line.car.Speed_m_s()), 0.01);
 }
 
-// The stack gone wild: the line carries what it can, the newest, and that expires in time.
+// A stack out of control: the line carries as much as it can, the newest commands, and they expire in time.
 TEST(EmulatedCarLine, AFloodOfCommandsEndsWithItsNewest) {
   Line line;
   for (int i = 0; i < 1500; ++i) {

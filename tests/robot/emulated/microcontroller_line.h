@@ -80,7 +80,7 @@ inline LineFault Halves() {
   };
 }
 
-// The host's last frame again and again, as a stuck buffer would.
+// Repeats the host's last frame again and again, like a stuck buffer.
 inline LineFault Duplicates() {
   return [last = Bytes(), repeat = Time(0)](Time now, Side from, const Bytes& sent) mutable {
     if (from == Side::kDevice) return sent;
@@ -91,7 +91,7 @@ inline LineFault Duplicates() {
   };
 }
 
-// What the host sends comes that much later.
+// Delays what the host sends by this time.
 inline LineFault Late(Duration by) {
   return [by, held = std::deque<std::pair<Time, Bytes>>()](Time now, Side from, const Bytes& sent) mutable {
     if (from == Side::kDevice) return sent;

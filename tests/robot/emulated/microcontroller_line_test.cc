@@ -200,7 +200,7 @@ TEST(MicrocontrollerLine, BrakesWhenThePortGoesAndDrivesAgainWhenItComesBack) {
 }
 
 // A new program whose clock begins at 0, behind a microcontroller that has long heard another.
-TEST(MicrocontrollerLine, TakesCommandsOfAHostThatStartedAnew) {
+TEST(MicrocontrollerLine, TakesCommandsOfARestartedHost) {
   ControllerLine line;
   line.now = std::chrono::hours(1);
   line.Run(milliseconds(1000), kGo);
@@ -213,7 +213,7 @@ TEST(MicrocontrollerLine, TakesCommandsOfAHostThatStartedAnew) {
   EXPECT_LT(line.states.back().stamp, milliseconds(500));
 }
 
-TEST(MicrocontrollerLine, GoesOnWhenTheMicrocontrollerStartsAnew) {
+TEST(MicrocontrollerLine, ContinuesAfterTheMicrocontrollerRestarts) {
   ControllerLine line;
   line.Run(milliseconds(2000), kGo);
   const std::int64_t counts = line.states.back().encoder_counts;

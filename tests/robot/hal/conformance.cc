@@ -66,7 +66,7 @@ TEST_P(HalConformance, DeliversAtItsRatesInOrderOfStamps) {
   for (std::size_t i = 1; i < session.drive.size(); ++i) EXPECT_GT(session.drive[i].stamp, session.drive[i - 1].stamp);
 }
 
-// What supervision and the pre-flight check go by (autonomy/supervise.h, scenarios/run/preflight.h).
+// Supervision and the pre-flight check rely on these rates (autonomy/supervise.h, scenarios/run/preflight.h).
 TEST_P(HalConformance, TellsInItsStatusTheRateAtWhichItDelivers) {
   Session session(GetParam());
   session.Drive(3.0, std::nullopt);
@@ -299,8 +299,8 @@ TEST_P(HalConformance, DrivesNoFasterThanTheCarCanForHugeNumbersAndStopsAfterThe
   }
 }
 
-// Thousands of commands between two looks at the devices, as from a stack that has gone wild: the last counts, no queue
-// of old ones is worked off before it, and it expires like any other.
+// Thousands of commands between two polls of the devices, as from a stack out of control: the last one counts, no queue
+// of old ones is processed before it, and it expires like any other.
 TEST_P(HalConformance, TakesTheNewestOfAFloodAndItExpires) {
   Session session(GetParam());
   const auto flood = [&](const DriveCommand& newest) {
@@ -320,7 +320,7 @@ TEST_P(HalConformance, TakesTheNewestOfAFloodAndItExpires) {
   EXPECT_TRUE(session.drive.back().expired);
 }
 
-// The command in force would hold for long: it is the other end that must brake, by itself.
+// The command in force would hold for long: the other end must brake by itself.
 TEST_P(HalConformance, StandsInTimeWithItsPlugPulledAndDrivesAgainOncePluggedIn) {
   Session session(GetParam());
   session.Drive(1.5, Go(0.8, 0.0, 10.0));

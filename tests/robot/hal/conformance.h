@@ -1,6 +1,6 @@
-// The conformance suite of the hardware abstraction layer: what every plug promises, tested through the interfaces alone.
-// A plug runs it by instantiating HalConformance with a factory for a car that stands at the start of a straight, free
-// way of at least 6 m, a wall square ahead within the depth camera's unambiguous range.
+// The conformance suite of the hardware abstraction layer: what every plug promises, tested through the interfaces
+// alone. A plug runs it by instantiating HalConformance with a factory for a car that stands at the start of a
+// straight, free way of at least 6 m, a wall square ahead within the depth camera's unambiguous range.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,9 +22,9 @@ class Rigged {
   virtual double wall_ahead_m() = 0;   // from base_link at the start
   virtual double start_yaw_rad() = 0;  // in the world
   virtual double compass_sigma_rad() = 0;
-  // How late threads and lines may make what happens; zero where time waits for the test.
+  // How much later threads and lines may make events; zero if time waits for the test.
   virtual Duration slack() { return Duration(0); }
-  // Pulls the drive's plug and puts it back. False: there is none, nothing lies between the calls and the car.
+  // Unplugs the drive, and plugs it in again. False if there is no plug between the calls and the car.
   virtual bool Unplug() { return false; }
   virtual void PlugIn() {}
 };

@@ -156,7 +156,7 @@ TEST(ColorCameraDriver, IsFaultyWhenTheSizeChanges) {
   EXPECT_TRUE(Until([&] { return camera.Status().garbage > 0; }));
 }
 
-TEST(ColorCameraDriver, OpensAStreamAgainThatStoppedWithoutAWord) {
+TEST(ColorCameraDriver, ReopensAStreamThatStoppedSilently) {
   MjpegServer server;
   HandClock clock;
   std::optional<Publisher> publisher(std::in_place, server, Picture(50));

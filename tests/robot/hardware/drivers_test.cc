@@ -1,6 +1,6 @@
-// The shipped drivers, with their threads, over pseudo-terminals against the emulated devices, in real time. What each
-// fault does is tested without threads in tests/robot/twin/devices; here, that threads and ports carry it. Waits end
-// when what is waited for has come; they fail only after 20 s.
+// The shipped drivers, with their threads, over pseudo-terminals against the emulated devices, in real time. The effect
+// of each fault is tested without threads in tests/robot/emulated; these tests show that threads and ports work. A wait
+// ends when its condition holds; it fails only after 20 s.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -74,7 +74,7 @@ class Devices {
 
 class Drivers : public ::testing::Test {
  protected:
-  // Until it holds; the stack ticks meanwhile. False: not within 20 s.
+  // Waits until the condition holds, while the stack ticks. False if it did not hold within 20 s.
   template <class Condition>
   bool Eventually(Condition condition, const std::optional<DriveCommand>& command = std::nullopt) {
     for (const Time end = clock.Now() + std::chrono::seconds(20); clock.Now() < end;) {

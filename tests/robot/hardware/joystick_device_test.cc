@@ -11,7 +11,7 @@
 namespace merlin {
 namespace {
 
-TEST(JoystickDevice, RefusesWhatIsNoJoystick) {
+TEST(JoystickDevice, RejectsAFileThatIsNotAJoystick) {
   const TemporaryFolder folder;
   EXPECT_THROW(JoystickDevice(folder.path() / "js0"), MachineError);
   std::ofstream(folder.path() / "file") << "not a stick";

@@ -1,4 +1,4 @@
-// What a port says that cannot be had. The ports are pseudo-terminals.
+// Serial ports, among them ones that cannot be opened. The ports are pseudo-terminals.
 #include "robot/hardware/serial/serial_port.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace merlin {
 namespace {
 
-// Opens the port; what it says, or "".
+// Opens the port and returns the error message, or "".
 std::string Complaint(const std::string& port, int baud = 9600) {
   try {
     SerialPort(SerialConfig{.port = port, .baud = baud}).Open();

@@ -1,5 +1,5 @@
-// A maker's library, generation 2, that throws exceptions through its C calls once it has given some frames: all at
-// 2 m, as many columns and rows as the environment says ("COLUMNSxROWSxFRAMES", default 8x6x3).
+// A vendor's library, generation 2, that throws exceptions through its C functions after some frames: all at 2 m, with
+// as many columns and rows as the environment says ("COLUMNSxROWSxFRAMES", default 8x6x3).
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -52,14 +52,14 @@ DepthFrame Frame(unsigned int seed) {
   return frame;
 }
 
-// A path that no other test has.
+// A path that no other test uses.
 std::string SocketPath() {
   static int number = 0;
   return std::filesystem::temp_directory_path() /
          ("merlin_tof_" + std::to_string(::getpid()) + "_" + std::to_string(++number));
 }
 
-// The twin's side: publishes, and keeps the settings that came.
+// The twin's side: publishes frames, and stores the settings that it receives.
 struct Emulation {
   explicit Emulation(std::string at = SocketPath(), DepthCameraSheet sheet = Info().sheet)
       : path(std::move(at)), server(path, sheet, {}, [this](const DepthSettings& asked) {
@@ -85,7 +85,7 @@ TofCameraConfig Config(const std::string& path) {
   return config;
 }
 
-// Publishes until the driver hands a frame out: one that comes while the driver is busy elsewhere goes by.
+// Publishes until the driver returns a frame; a frame that arrives while the driver is busy is lost.
 std::optional<DepthFrame> Exchange(Emulation& emulation, TofCameraDriver& camera, const DepthFrame& frame) {
   std::optional<DepthFrame> got;
   EXPECT_TRUE(Until([&] {
@@ -176,7 +176,7 @@ TEST(TofCameraDriver, RefusesSettingsThatTheSheetOrTheLibraryDoesNotHave) {
   EXPECT_THROW(camera.Configure({.phase_images = true}), InputError);
 }
 
-TEST(TofCameraDriver, ThrowsPixelsOutThatAreNoNumbers) {
+TEST(TofCameraDriver, RejectsPixelsThatAreNotFinite) {
   Emulation emulation;
   HandClock clock;
   TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
@@ -334,7 +334,7 @@ TEST(TofCameraDriver, SpeaksTheOlderGenerationToo) {
   EXPECT_THROW(camera.Configure({1e-3, 20e6, 30e6}), InputError);
 }
 
-TEST(DepthServer, DropsWhoTalksGarbageAndServesTheOthers) {
+TEST(DepthServer, DropsAClientThatSendsGarbageAndServesTheOthers) {
   Emulation emulation;
   HandClock clock;
   TofCameraDriver camera(Config(emulation.path), Info(), {}, clock);
@@ -352,7 +352,7 @@ TEST(DepthServer, DropsWhoTalksGarbageAndServesTheOthers) {
   EXPECT_TRUE(Exchange(emulation, camera, Frame(1)));
 }
 
-TEST(TofCameraDriver, SurvivesAServerThatTalksGarbage) {
+TEST(TofCameraDriver, SurvivesAServerThatSendsGarbage) {
   const std::string path = SocketPath();
   std::atomic<int> visits = 0;
   HandClock clock;

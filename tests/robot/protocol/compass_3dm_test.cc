@@ -18,7 +18,7 @@ TEST(Compass3dm, ReadsBigEndianWords) {
   EXPECT_EQ(*counts, (Counts{0x1234, 0xFFFE, 0x8000}));
 }
 
-TEST(Compass3dm, RefusesRepliesThatAreNone) {
+TEST(Compass3dm, RejectsInvalidReplies) {
   EXPECT_FALSE(DecodeReply({}, false));
   EXPECT_FALSE(DecodeReply(Bytes{0x44, 0, 0, 0, 0, 0}, false));
   EXPECT_FALSE(DecodeReply(Bytes{0x44, 0, 0, 0, 0, 0, 0, 0}, false));

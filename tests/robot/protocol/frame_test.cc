@@ -23,10 +23,10 @@ Frame Numbered(std::uint8_t sequence) { return {.type = 0x02, .sequence = sequen
 
 TEST(Crc16, GivesTheCheckValueOfItsCatalogue) { EXPECT_EQ(Crc16(FromText("123456789")), 0x29B1); }
 
-TEST(Crc16, OfNothingIsItsStart) { EXPECT_EQ(Crc16({}), 0xFFFF); }
+TEST(Crc16, OfNoBytesIsTheInitialValue) { EXPECT_EQ(Crc16({}), 0xFFFF); }
 
 // Cheshire and Baker's examples, and the block of 254.
-TEST(Cobs, StuffsAndUnstuffsByHand) {
+TEST(Cobs, EncodesAndDecodesExamplesByHand) {
   const std::vector<std::pair<Bytes, Bytes>> pairs{
       {{}, {0x01}},
       {{0x00}, {0x01, 0x01}},

@@ -38,7 +38,7 @@ TEST(Joystick, IgnoresAndCountsUnknownEventsAndPieces) {
   EXPECT_TRUE(decoder.state().buttons[31]);
 }
 
-TEST(Joystick, ReadsNothingFromNothing) {
+TEST(Joystick, ReadsNothingFromEmptyInput) {
   Decoder decoder;
   decoder.Feed({});
   EXPECT_EQ(decoder.garbage_bytes(), 0u);

@@ -53,7 +53,7 @@ TEST(MicrocontrollerMessages, AreTheBytesWrittenByHand) {
   for (const auto& [encoded, by_hand] : encoded_and_by_hand) EXPECT_EQ(encoded, by_hand);
 }
 
-TEST(MicrocontrollerMessages, ComeBackAsTheyWent) {
+TEST(MicrocontrollerMessages, AreDecodedAsTheyWereEncoded) {
   const Command command{4'000'000'000u, -1.234567, 0.4363, milliseconds(65535)};
   EXPECT_EQ(Through(command), command);
   EXPECT_EQ(Single<ToMicro>(Encode(ToMicro(Hello{}), 1)), ToMicro(Hello{}));

@@ -5,7 +5,7 @@
 namespace merlin::operator_link {
 namespace {
 
-TEST(OperatorLink, SaysEveryMessageAgain) {
+TEST(OperatorLink, DecodesEveryMessageThatItEncodes) {
   Decoder decoder;
   std::uint8_t sequence = 250;
   for (int command = 0; command < 256; ++command)

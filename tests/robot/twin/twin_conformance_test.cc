@@ -114,7 +114,7 @@ TEST(Twin, GivesTheSameColourForAnyNumberOfThreads) {
   }
 }
 
-TEST(Twin, HasNoPanUnitAndNoStandUnlessTheyAreAskedFor) {
+TEST(Twin, HasNoPanUnitAndNoTurntableUnlessAskedFor) {
   const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
   TwinOptions options = Options(room);
   options.world.car.pan->moves = false;

@@ -1,4 +1,4 @@
-// Laws of the small types every room shares.
+// Laws of the small types that all modules share.
 #include <gtest/gtest.h>
 
 #include <cmath>
