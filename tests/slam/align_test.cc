@@ -44,7 +44,7 @@ Cloud Corner(double noise_m, std::uint32_t seed, int planes = 3) {
   return cloud;
 }
 
-// The thesis' 5.6: given points, a helix, random points.
+// The point sets of section 5.6 of the thesis: given points, a helix, random points.
 const Cloud kData1{{{1, 2, 0},
                     {1, 2.5, .2},
                     {2, 4, .3},
@@ -178,7 +178,7 @@ TEST(Align, TrustsASurePointMoreThanAnUnsureOne) {
   EXPECT_LT(result.T_target_source.translation().norm(), 1e-5);
 }
 
-TEST(Align, SaysWhatABareCorridorAFloorAndALineDoNotHold) {
+TEST(Align, ReportsWhatABareCorridorAFloorAndALineLeaveUndetermined) {
   const Cloud corridor = Corner(0.003, 1, 2), floor = Corner(0.003, 1, 1);
   Cloud line;
   for (int i = 0; i < 200; ++i) line.positions.push_back({0.01 * i, 0.02 * i, 0.0});
@@ -200,7 +200,7 @@ TEST(Align, SaysWhatABareCorridorAFloorAndALineDoNotHold) {
   const AlignResult result = Align(corridor, corridor, Pose(Eigen::Translation3d(0.1, 0.02, 0.01)), {});
   ASSERT_EQ(result.undetermined.count(), 1);
   EXPECT_GT(std::abs(result.undetermined.directions(0, 0)), 0.99);
-  EXPECT_NEAR(result.T_target_source.translation().x(), 0.1, 0.01);  // the guess is kept along it
+  EXPECT_NEAR(result.T_target_source.translation().x(), 0.1, 0.01);  // along it the result stays at the guess
   EXPECT_NEAR(result.T_target_source.translation().y(), 0.0, 0.002);
 }
 
@@ -247,7 +247,7 @@ TEST(Align, GivesTheSameBitsTwice) {
   }
 }
 
-// More points than serve while the kernel narrows: the last steps are with all of them.
+// The cloud has more points than are used while the kernel narrows; the last steps use all of them.
 TEST(Align, TakesEveryPointOfALargeCloudAtTheEnd) {
   Cloud source, target;
   for (std::uint32_t seed = 1; seed <= 8; ++seed)
@@ -299,7 +299,7 @@ TEST(ThinToFit, LeavesAtMostTwentyThousandPointsAndSmallCloudsAsTheyAre) {
   EXPECT_EQ(thin.target.positions, Thin(large, thin.voxel_m).positions);
   const Cloud same{std::vector<Eigen::Vector3d>(30'000, {1, 2, 3}), {}};
   EXPECT_EQ(ThinToFit(same, small).source.size(), 1u);
-  EXPECT_EQ(ThinToFit(same, same).voxel_m, 0.0);  // there is no length to choose by
+  EXPECT_EQ(ThinToFit(same, same).voxel_m, 0.0);  // there is no length from which to choose a voxel
 }
 
 TEST(Surfaces, HaveTheirPlanesNormalsAndKnowCurves) {

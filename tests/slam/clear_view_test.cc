@@ -8,7 +8,7 @@
 namespace merlin {
 namespace {
 
-// Of a grid of pixels around straight ahead, 0.05 apart, as far as length_m(across, up) says.
+// A grid of pixels around straight ahead, 0.05 apart, with rays of length length_m(across, up).
 template <class Length>
 Observation Seen(Length length_m) {
   Observation seen;
@@ -69,7 +69,7 @@ TEST(ClearView, TellsDarkRaysAndIsSilentBesideUnknownOnes) {
   EXPECT_FALSE(view.Along({1.0f, 0.1f, 0.1f}).dark);
 }
 
-TEST(ClearView, SaysNothingOfNothing) {
+TEST(ClearView, IsUnknownWithoutRays) {
   const auto ends = [](std::vector<Eigen::Vector3f> points) {
     Observation seen;
     for (const Eigen::Vector3f& point : points) seen.points_base.push_back({.position = point});

@@ -102,7 +102,7 @@ TEST(Icp, HoldsAgainstThreeTenthsOfThePointsBeingSomethingElse) {
   EXPECT_LT((result.T_map_base.translation() - T_map_base.translation()).norm(), 0.012);
 }
 
-// Around a corner a frame shows far more that is new than what the map has.
+// Around a corner a frame shows far more new surfaces than surfaces that the map has.
 TEST(Icp, ConvergesWhenMostPointsAreSeenForTheFirstTime) {
   const VoxelMap map = MapOf(NoisyCorner(0.003, 1));
   const Pose T_map_base = FromXyYaw(0.03, -0.02, 0.02);

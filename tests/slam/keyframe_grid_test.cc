@@ -34,7 +34,7 @@ std::vector<double> CellsOf(const OccupancyGrid& grid) {
   return cells;
 }
 
-// Each key frame after the other, by the grid itself.
+// Enters one key frame after the other directly into a grid.
 std::vector<double> MadeAtOnce(const std::vector<Keyframe>& keyframes) {
   OccupancyGrid grid({});
   for (const Keyframe& keyframe : keyframes)
@@ -52,7 +52,7 @@ struct GridDrive {
     for (std::size_t i = 0; i < keyframes.size(); ++i) keyframes[i].T_map_base = Along(i, turn_rad);
     grid.Renew();
   }
-  // Frames until the grid is renewed; with a new key frame before each if so wished.
+  // Number of frames until the grid is renewed, with a new key frame before each if requested.
   std::size_t FramesUntilRenewed(bool drives, double turn_rad) {
     std::size_t frames = 0;
     for (; grid.renewing() && frames < 1000; ++frames) {
@@ -122,7 +122,7 @@ TEST(KeyframeGrid, FollowsASecondCorrectionThatComesBeforeTheFirstIsThrough) {
   }
 }
 
-// Were each to begin anew, none would ever be through.
+// If each correction started the renewal again, it would never end.
 TEST(KeyframeGrid, IsRenewedThoughCorrectionsNeverEnd) {
   GridDrive drive;
   while (drive.keyframes.size() < 300) drive.Add();

@@ -120,7 +120,7 @@ std::vector<Pose> PosesOf(const std::vector<Keyframe>& keyframes) {
   return poses;
 }
 
-TEST(LoopCloser, WantsTwoSearchesThatAgreeThenClosesTheSquare) {
+TEST(LoopCloser, ClosesTheSquareAfterTwoSearchesThatAgree) {
   const Square square({0.25, -0.2, 0.0});
   ASSERT_GT(WorstError_m(PosesOf(square.keyframes), square.truths), 0.25);
   LoopCloser closer({});
@@ -141,7 +141,7 @@ TEST(LoopCloser, WantsTwoSearchesThatAgreeThenClosesTheSquare) {
   EXPECT_EQ(solved->front().matrix(), square.keyframes.front().T_map_base.matrix());
 }
 
-TEST(LoopCloser, RefusesALoopThatNoOdometryIsBadEnoughFor) {
+TEST(LoopCloser, RejectsALoopThatOdometryRulesOut) {
   const Square square({1.2, -0.3, 0.0});
   LoopCloser closer({.reach_m = 3.0, .start_sigma_m = 2.0, .agreeing_min = 1, .strain_max = 30.0});
   const Keyframe& last = square.keyframes.back();
@@ -158,7 +158,7 @@ TEST(LoopCloser, LeavesAMapWithoutDriftAsItIs) {
   EXPECT_LT(WorstError_m(*solved, square.truths), 0.01);
 }
 
-TEST(LoopCloser, SearchesOnlyWhenSwitchedOnAndSomeWayAfterTheLastTime) {
+TEST(LoopCloser, SearchesOnlyIfSwitchedOnAndSomeDistanceAfterTheLastSearch) {
   EXPECT_FALSE(LoopCloser({.enabled = false}).IsDue(100.0));
   LoopCloser closer({.every_m = 0.5});
   EXPECT_TRUE(closer.IsDue(0.5));

@@ -14,11 +14,11 @@ namespace {
 using Box = Eigen::AlignedBox3d;
 
 constexpr double kCamera_m = 0.35;  // height
-constexpr double kFar_m = 6.0;      // beyond it nothing returns...
-constexpr double kFree_m = 4.0;     // ...and so far the way is free then
+constexpr double kFar_m = 6.0;      // nothing returns from beyond it...
+constexpr double kFree_m = 4.0;     // ...and the path is then free up to here
 
-// Along a ray from outside to the box; infinite: past it. Slabs, one axis after the other. Plain numbers, since it is asked
-// a million times, under the sanitizers too.
+// Distance along a ray from outside to the box; infinite if the ray misses it. Slab method, one axis after the other,
+// in plain numbers, because it is called a million times, under the sanitizers too.
 double RangeTo(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   const double *low = box.min().data(), *high = box.max().data(), *from = origin.data(), *along = direction.data();
   double enter = 0.0, leave = HUGE_VAL;
@@ -88,7 +88,7 @@ struct Outcome {
   int box_left = 0, rest_left = 0;  // that did not move away
 };
 
-// Thirty frames 5 cm apart towards the box, which is there in those that is_there names.
+// Thirty frames 5 cm apart towards the box, which is present in those that is_there selects.
 Outcome DrivePast(double end_m, bool tells_free, const std::function<bool(int)>& is_there, const Box& thing = kBox) {
   Camera camera;
   std::vector<Keyframe> keyframes;
@@ -144,7 +144,7 @@ TEST(MovedAway, KeepsAThinPole) {
   EXPECT_GE(out.box_left, 0.95 * out.box);
 }
 
-// A corridor's end beyond the camera's range proves nothing, unless the camera says that its rays were free.
+// The end of a corridor beyond the camera's range proves nothing, unless the camera reports that its rays were free.
 TEST(MovedAway, NeedsRaysThatTellOfTheDark) {
   const auto passes_by = [](int i) { return i >= 12 && i < 17; };
   const Outcome silent = DrivePast(90.0, false, passes_by), told = DrivePast(90.0, true, passes_by);
@@ -153,8 +153,8 @@ TEST(MovedAway, NeedsRaysThatTellOfTheDark) {
   EXPECT_GE(told.rest_left, 0.99 * told.rest);
 }
 
-// The floor from 3.4 m on, seen from near at first, then as nothing but dark pixels: each implies that it is free for longer
-// than the floor is away, since the floor sends so little back.
+// The floor from 3.4 m on, seen from near at first, then as nothing but dark pixels: each implies that it is free for
+// longer than the floor is away, since the floor sends so little back.
 TEST(MovedAway, KeepsAFloorThatIsTooDarkFromFarAway) {
   VoxelMap map({.voxel_m = 0.04});
   std::vector<Keyframe> keyframes;
@@ -175,7 +175,7 @@ TEST(MovedAway, KeepsAFloorThatIsTooDarkFromFarAway) {
   EXPECT_LT(std::ranges::count(gone, true), 0.01 * static_cast<double>(gone.size()));
 }
 
-// Two visits whose poses disagree by 5 cm and 10 mrad, and walls along the way.
+// Two visits whose poses disagree by 5 cm and 10 mrad, and walls along the path.
 TEST(MovedAway, KeepsWallsOfTwoVisitsThatDoNotQuiteAgree) {
   VoxelMap map({.voxel_m = 0.04});
   std::vector<Keyframe> keyframes;
@@ -190,7 +190,7 @@ TEST(MovedAway, KeepsWallsOfTwoVisitsThatDoNotQuiteAgree) {
   EXPECT_LT(std::ranges::count(gone, true), 0.02 * static_cast<double>(gone.size()));
 }
 
-// However little it was seen: two may err.
+// However rarely it was seen, two views through it may be wrong.
 TEST(MovedAway, NeedsThreeViewsThroughAVoxel) {
   Camera camera;
   VoxelMap map({.voxel_m = 0.04});
@@ -252,7 +252,8 @@ TEST(MovedAway, TakesViewsWhereTheyWereInTheOrderOfTime) {
   EXPECT_LE(differ, 3);
 }
 
-// Points on a line across the way, 2 cm apart and 12 cm above the floor, and one on the floor; the car drives over them.
+// Points on a line across the path, 2 cm apart and 12 cm above the floor, and one on the floor; the car drives over
+// them.
 TEST(MovedAway, TakesOutWhatStoodWhereTheCarDrove) {
   const Pose T_map_way = FromXyYaw(2.0, -1.0, 2.0);
   std::vector<Point> line;
@@ -282,7 +283,8 @@ TEST(MovedAway, TakesOutWhatStoodWhereTheCarDrove) {
   EXPECT_EQ(std::ranges::count_if(left, [](double y) { return std::abs(y) > 0.105; }), 11);
 }
 
-// The car waits in front of a box that stays or goes: no new key frame is taken, and it keeps few views, however long this lasts.
+// The car waits in front of a box that stays or goes: no new key frame is taken, and it keeps few views, however long
+// this lasts.
 TEST(Slam, TakesOutOfItsMapWhatGoesAwayWhileTheCarStands) {
   for (const bool goes : {false, true}) {
     Slam slam({});
@@ -308,7 +310,7 @@ TEST(Slam, TakesOutOfItsMapWhatGoesAwayWhileTheCarStands) {
   }
 }
 
-TEST(MovedAway, TakesNothingFromNothing) {
+TEST(MovedAway, AcceptsAnEmptyMap) {
   EXPECT_TRUE(MovedAway({}, {}, {}).empty());
   VoxelMap map({});
   map.Insert(std::vector<Point>{{.position = {1.0f, 0.0f, 0.0f}, .sigma_m = 0.01f}}, Pose::Identity(), 0.0);

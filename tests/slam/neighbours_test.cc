@@ -31,7 +31,7 @@ void ExpectBruteForce(const std::vector<Eigen::Vector3d>& positions, const Eigen
   EXPECT_EQ(nearest.value_or(Neighbour{}).index, nearest ? expected[0].index : 0u);
 }
 
-TEST(Neighbours, AreThoseOfBruteForce) {
+TEST(Neighbours, AgreeWithBruteForce) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> at(-1.0, 1.0);
   std::vector<Eigen::Vector3d> positions(500);
@@ -39,7 +39,7 @@ TEST(Neighbours, AreThoseOfBruteForce) {
   for (int i = 0; i < 200; ++i) ExpectBruteForce(positions, {at(random), at(random), at(random)});
 }
 
-TEST(Neighbours, OfEqualDistanceAreTakenByIndex) {
+TEST(Neighbours, OfEqualDistanceAreOrderedByIndex) {
   // A lattice, every point twice, asked at its points, between two and at the middle of eight.
   std::vector<Eigen::Vector3d> positions;
   for (int twice = 0; twice < 2; ++twice)
@@ -51,14 +51,14 @@ TEST(Neighbours, OfEqualDistanceAreTakenByIndex) {
     }
 }
 
-TEST(Neighbours, OfNoneOneOrAllTheSame) {
+TEST(Neighbours, HandleNoPointOnePointAndEqualPoints) {
   ExpectBruteForce({}, {0, 0, 0});
   ExpectBruteForce({{0.1, 0, 0}}, {0, 0, 0});
   ExpectBruteForce(std::vector<Eigen::Vector3d>(100, {0.1, 0, 0}), {0, 0, 0});
   ExpectBruteForce(std::vector<Eigen::Vector3d>(100, {1e9, -1e9, 1e9}), {0, 0, 0});
 }
 
-TEST(Neighbours, OfAQueryThatIsNotFiniteAreNone) {
+TEST(Neighbours, AreNoneForAQueryThatIsNotFinite) {
   const std::vector<Eigen::Vector3d> positions(5, {0, 0, 0});
   const Neighbours neighbours(positions);
   std::vector<Neighbour> found(3);

@@ -22,7 +22,7 @@ TEST(OccupancyGrid, IsUnknownUntilSomethingWasSeen) {
   EXPECT_EQ(grid.At({1.0, 0.0}), Cell::kUnknown);
 }
 
-TEST(OccupancyGrid, FreesTheWayToAHitAndOccupiesTheHit) {
+TEST(OccupancyGrid, MarksTheRayFreeAndItsEndOccupied) {
   OccupancyGrid grid({});
   Look(grid, {{2.02f, 0.02f, 0.35f}});
   EXPECT_EQ(grid.At({2.02, 0.02}), Cell::kOccupied);
@@ -31,14 +31,14 @@ TEST(OccupancyGrid, FreesTheWayToAHitAndOccupiesTheHit) {
   EXPECT_EQ(grid.At({1.0, 0.3}), Cell::kUnknown);
 }
 
-TEST(OccupancyGrid, TakesFloorAndCeilingForNoObstacle) {
+TEST(OccupancyGrid, DoesNotTakeFloorOrCeilingForAnObstacle) {
   OccupancyGrid grid({});
   Look(grid, {{2.0f, 0.0f, 0.0f}, {2.0f, 1.0f, 2.4f}});
   EXPECT_NE(grid.At({2.0, 0.0}), Cell::kOccupied);
   EXPECT_NE(grid.At({2.0, 1.0}), Cell::kOccupied);
 }
 
-TEST(OccupancyGrid, ChangesItsMindWhenSomethingHasGone) {
+TEST(OccupancyGrid, FreesACellWhenTheObstacleHasGone) {
   OccupancyGrid grid({});
   Look(grid, {{1.02f, 0.02f, 0.35f}});
   EXPECT_EQ(grid.At({1.02, 0.02}), Cell::kOccupied);

@@ -36,7 +36,7 @@ TEST(Slam, CorrectsOdometryThatSlips) {
   for (int i = 0; i <= 60; ++i) {
     T_world_base = FromXyYaw(-0.5 + 0.015 * i, 0.2 * std::sin(0.05 * i), 0.3 * std::sin(0.05 * i));
     Observation observation = InRoom(T_world_base, 0.05 * i);
-    if (i > 0) T_odom_base.translation().x() += 0.015 * 1.05;  // wheels slip by 5 %, and know nothing of the side
+    if (i > 0) T_odom_base.translation().x() += 0.015 * 1.05;  // wheels slip by 5 %, and do not measure sideways motion
     observation.T_odom_base = T_odom_base;
     ASSERT_TRUE(slam.Update(observation));
     EXPECT_EQ(slam.lost_frames(), 0);
@@ -48,7 +48,7 @@ TEST(Slam, CorrectsOdometryThatSlips) {
   EXPECT_EQ(slam.trajectory().size(), 61u);
 }
 
-// Drives 0.9 m of which the wheels report `reported` times as much; true: it ends knowing that they slip.
+// Drives 0.9 m while the wheels report `reported` times that. Returns whether slip is detected at the end.
 bool EndsSlipping(double reported) {
   Slam slam({});
   Pose T_odom_base = Pose::Identity();
@@ -62,9 +62,9 @@ bool EndsSlipping(double reported) {
   return slam.slipping();
 }
 
-TEST(Slam, TellsWheelsThatSlipFromWheelsThatRoll) {
+TEST(Slam, DistinguishesSlippingWheelsFromRollingOnes) {
   EXPECT_FALSE(EndsSlipping(1.0));
-  EXPECT_FALSE(EndsSlipping(1.03));  // calibration's remains
+  EXPECT_FALSE(EndsSlipping(1.03));  // an error that calibration leaves
   EXPECT_TRUE(EndsSlipping(1.3));
   EXPECT_TRUE(EndsSlipping(0.8));  // the car slides on while its wheels are braked
 }
@@ -80,7 +80,7 @@ TEST(Slam, WaitsForTheHeadingAtTheStartButNotForEver) {
   EXPECT_TRUE(slam.Update(observation));
 }
 
-TEST(Slam, BeginsItsMapOnlyWithSomethingToHoldOnTo) {
+TEST(Slam, BeginsItsMapOnlyWithEnoughStructureToRegister) {
   Slam slam({});
   Observation blind;
   blind.yaw_sigma_rad = 0.001;
@@ -92,7 +92,7 @@ TEST(Slam, BeginsItsMapOnlyWithSomethingToHoldOnTo) {
   EXPECT_TRUE(slam.last().converged);
 }
 
-TEST(Slam, MapsNothingItDidNotRecognise) {
+TEST(Slam, MapsNoFrameThatItCouldNotRegister) {
   Slam slam({});
   ASSERT_TRUE(slam.Update(InRoom(Pose::Identity(), 0.0)));
   Observation elsewhere = InRoom(Pose::Identity(), 0.05);
@@ -132,7 +132,7 @@ TEST(Slam, KeepsItsDirectionWhenAHeadingComesLate) {
   observation.stamp = FromSeconds(2.0);
   ASSERT_TRUE(slam.Update(observation));
   observation.stamp = FromSeconds(2.05);
-  observation.yaw_rad = 1.5;  // the compass wakes up
+  observation.yaw_rad = 1.5;  // the compass begins to deliver
   observation.yaw_sigma_rad = 0.01;
   const auto pose = slam.Update(observation);
   ASSERT_TRUE(pose);

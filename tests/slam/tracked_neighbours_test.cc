@@ -25,7 +25,7 @@ void ExpectSame(const std::optional<Neighbour>& a, const std::optional<Neighbour
   EXPECT_NEAR(a->squared_m2, b->squared_m2, 1e-14);
 }
 
-TEST(TrackedNeighbours, AnswerAsBruteForceAfterStepsOfEverySize) {
+TEST(TrackedNeighbours, AgreeWithBruteForceAfterStepsOfEverySize) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> at(0.0, 1.0);
   const auto point = [&] { return Eigen::Vector3d(at(random), at(random), at(random)); };
@@ -45,7 +45,7 @@ TEST(TrackedNeighbours, AnswerAsBruteForceAfterStepsOfEverySize) {
   }
 }
 
-TEST(TrackedNeighbours, KnowOnePointNoneAndNoNumber) {
+TEST(TrackedNeighbours, HandleOnePointNoPointAndNaN) {
   const std::vector<Eigen::Vector3d> none, one{{1.0, 2.0, 3.0}};
   const Neighbours no_tree(none), tree(one);
   TrackedNeighbours nothing(no_tree, none, 1, 1.0), tracked(tree, one, 1, 1.0);

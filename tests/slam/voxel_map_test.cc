@@ -19,7 +19,7 @@ std::vector<Point> Scatter(int count, double size_m, std::uint32_t seed) {
   return points;
 }
 
-TEST(VoxelMap, FindsTheNearestSurfaceThatBruteForceFinds) {
+TEST(VoxelMap, FindsTheSameNearestSurfaceAsBruteForce) {
   // Any neighbourhood counts as a plane here, so that every voxel may be found.
   VoxelMap map({.voxel_m = 0.1, .flatness_max = 1.0, .plane_points_min = 3});
   map.Insert(Scatter(3000, 1.0, 1), Pose::Identity(), 0.0);
@@ -127,7 +127,7 @@ TEST(VoxelMap, TakesTheColourOfTheBestView) {
       << voxel.bgr().transpose();
 }
 
-TEST(VoxelMap, ForgetsTheVoxelsThatItIsTold) {
+TEST(VoxelMap, RemovesTheRequestedVoxels) {
   VoxelMap map({.voxel_m = 0.1, .flatness_max = 1.0, .plane_points_min = 3});
   map.Insert(Scatter(3000, 0.5, 1), Pose::Identity(), 0.0);
   const std::vector<Voxel> before = map.voxels();
@@ -153,7 +153,7 @@ TEST(VoxelMap, LeavesOutPointsThatAreNotFinite) {
   }
 }
 
-// Bit by bit: what a map of key frames is must not depend on how it was made.
+// Bit by bit, because a map of key frames must not depend on how it was made.
 TEST(VoxelMap, InsertsManyFramesAsOneAfterTheOther) {
   for (const int count : {0, 1, 2, 12}) {
     VoxelMap one_by_one({.voxel_m = 0.1, .flatness_max = 1.0, .plane_points_min = 3});

@@ -9,7 +9,7 @@
 namespace merlin {
 namespace {
 
-// A random network of `size` rows: a chain and as many more pairs, some of them twice and either way round.
+// A random network of `size` rows: a chain, and as many more pairs, some of them twice and in either order.
 std::vector<BlockIndex> RandomPairs(int size, std::mt19937& generator) {
   std::vector<BlockIndex> pairs;
   for (int i = 0; i + 1 < size; ++i) pairs.push_back({.row = i, .column = i + 1});
@@ -66,7 +66,7 @@ void ExpectSolvesAsTheDenseMatrix(int size) {
   }
 }
 
-TEST(BlockCholesky, SolvesAsTheDenseMatrix) {
+TEST(BlockCholesky, SolvesLikeADenseSolver) {
   for (const int size : {1, 2, 3, 10, 40}) {
     ExpectSolvesAsTheDenseMatrix<1>(size);
     ExpectSolvesAsTheDenseMatrix<3>(size);
@@ -74,7 +74,7 @@ TEST(BlockCholesky, SolvesAsTheDenseMatrix) {
   }
 }
 
-TEST(BlockCholesky, SolvesWhatIsNotJoined) {
+TEST(BlockCholesky, SolvesAnUnconnectedSystem) {
   std::mt19937 generator(1);
   const System<3> system(4, generator, {{.row = 3, .column = 1}});
   BlockCholesky<3> solver(system.pattern);
@@ -84,7 +84,7 @@ TEST(BlockCholesky, SolvesWhatIsNotJoined) {
   EXPECT_LT((system.dense * x - Eigen::VectorXd::Ones(12)).norm(), 1e-12);
 }
 
-TEST(BlockCholesky, SolvesNothing) {
+TEST(BlockCholesky, SolvesAnEmptySystem) {
   const BlockPattern pattern = MakePattern(0, {});
   BlockCholesky<6> solver(pattern);
   EXPECT_TRUE(solver.Factorize(BlockMatrix<6>(pattern), 0.0));
@@ -93,7 +93,7 @@ TEST(BlockCholesky, SolvesNothing) {
   EXPECT_EQ(pattern.factor_blocks(), 0u);
 }
 
-TEST(BlockCholesky, SaysWhatIsNotPositiveDefinite) {
+TEST(BlockCholesky, ReportsAMatrixThatIsNotPositiveDefinite) {
   std::mt19937 generator(2);
   System<3> system(5, generator, RandomPairs(5, generator));
   BlockCholesky<3> solver(system.pattern);
@@ -102,7 +102,7 @@ TEST(BlockCholesky, SaysWhatIsNotPositiveDefinite) {
     broken.diagonal[2](1, 1) = bad;
     EXPECT_FALSE(solver.Factorize(broken, 0.0)) << bad;
   }
-  EXPECT_TRUE(solver.Factorize(system.sparse, 0.0));  // and is none the worse for it
+  EXPECT_TRUE(solver.Factorize(system.sparse, 0.0));  // the failure before has no effect
   EXPECT_FALSE(solver.Factorize(BlockMatrix<3>(system.pattern), 0.0));
 }
 

@@ -118,7 +118,7 @@ TEST(G2oFile, RefusesWithTheLine) {
   ExpectRefused(std::string(1000, 'x') + "\xff\x01", "f.g2o:1: unknown tag");
 }
 
-// Each fault with its line, and no pose called missing because its own line is wrong.
+// Each fault is reported with its line, and a pose whose line is wrong is not also reported as missing.
 TEST(G2oFile, NamesEveryFaultAtOnce) {
   try {
     ParseG2o(
@@ -168,7 +168,7 @@ TEST(G2oFile, WarnsOnceOfPartsThatNoEdgeJoins) {
   EXPECT_TRUE(file.warnings[0].ends_with("(1 of one pose, which stays)")) << file.warnings[0];
 }
 
-// Whatever ids a file has, memory goes by what is in it.
+// Memory depends on how many elements a file has, not on their ids.
 TEST(G2oFile, TakesIdsOfAnySize) {
   const G2oFile file = ParseG2o("EDGE_SE2 -9223372036854775808 9223372036854775807 1 0 0 1 0 0 1 0 1\n", "f");
   EXPECT_EQ(file.graph.poses.size(), 2u);
@@ -218,7 +218,7 @@ TEST(G2oFile, WritesWhatItReadsAgain) {
   }
 }
 
-// Every text is either taken, and then solved without a fault, or refused by one sentence.
+// Every text is either accepted, and then solved without a fault, or rejected in one sentence.
 TEST(G2oFile, SurvivesBrokenTexts) {
   const std::string seeds[] = {kPlanar, kSpatial,
                                "EDGE_SE2 5 6 1 0 1.5 1 0 0 1 0 1\nEDGE_SE2 6 7 1 0 0 1 0 0 1 0 1\nFIX 6\n"};
@@ -249,8 +249,8 @@ std::ptrdiff_t CountOf(const std::string& text, const std::string& word) {
   return count;
 }
 
-// A file that was cut off: taken with every line that is there, or refused by one sentence. Cut after the line of an
-// edge, it is taken.
+// A truncated file is either accepted with every line in it, or rejected in one sentence. Truncated after the line of
+// an edge, it is accepted.
 TEST(G2oFile, EveryPrefixIsTakenOrRefused) {
   for (const std::string& whole : {kPlanar, kSpatial}) {
     int taken = 0;

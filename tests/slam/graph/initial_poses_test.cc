@@ -13,7 +13,7 @@ void ExpectSame(const std::vector<Pose>& a, const std::vector<Pose>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT((a[i].matrix() - b[i].matrix()).norm(), 1e-9) << i;
 }
 
-TEST(InitialPoses, FindWhatEdgesWithoutErrorSay) {
+TEST(InitialPoses, AreExactForEdgesWithoutError) {
   for (const bool planar : {false, true}) {
     PoseGraph graph = RandomGraphs(1).Walk(25, 0.0, planar);
     const std::vector<Pose> truth = graph.poses;
@@ -57,7 +57,7 @@ TEST(InitialPoses, ChordalSharesTheMisfit) {
   EXPECT_LT(chordal, 0.5 * Evaluate(graph, Objective::kA));
 }
 
-TEST(InitialPoses, AreNoneWhereNothingJoinsAPose) {
+TEST(InitialPoses, AreNoneIfAPoseIsNotConnected) {
   PoseGraph graph = RandomGraphs(2).Walk(5, 0.0, false);
   graph.poses.push_back(Exp(Vector6d::Ones()));
   EXPECT_FALSE(ChordalPoses(graph));

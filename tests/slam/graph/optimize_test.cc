@@ -20,7 +20,7 @@ void ExpectSamePoses(const std::vector<Pose>& a, const std::vector<Pose>& b, dou
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_LT(Distance(a[i], b[i]), tolerance) << i;
 }
 
-// Edges that agree: from far away every pose comes back, whatever the weights.
+// If all edges agree, every pose is found from a distant start, whatever the weights.
 TEST(Optimize, FindsPosesThatAgreeWithEveryEdge) {
   for (const bool planar : {false, true}) {
     RandomGraphs random(1);
@@ -38,7 +38,7 @@ TEST(Optimize, FindsPosesThatAgreeWithEveryEdge) {
 }
 
 // Where no step improves, every derivative of the objective is zero: by differences of its value alone.
-TEST(Optimize, EndsWhereDifferencesFindNoSlope) {
+TEST(Optimize, EndsWhereFiniteDifferencesVanish) {
   for (const bool planar : {false, true})
     for (const Objective objective : {Objective::kA, Objective::kB}) {
       RandomGraphs random(2);
@@ -136,7 +136,7 @@ TEST(Optimize, KeepsFixedPosesAndTheFirstWhereNoneIs) {
   EXPECT_GT(Distance(result.poses[0], graph.poses[0]), 1e-3);
 }
 
-TEST(Optimize, LeavesAloneWhatHasNothingToSolve) {
+TEST(Optimize, LeavesUnconstrainedPosesUnchanged) {
   EXPECT_TRUE(Optimize({}, {}).converged);
   PoseGraph graph{.poses = {Exp(Vector6d::Ones())}, .edges = {}, .fixed = {}, .planar = false};
   EXPECT_EQ(Optimize(graph, {}).poses[0].matrix(), graph.poses[0].matrix());
@@ -146,7 +146,7 @@ TEST(Optimize, LeavesAloneWhatHasNothingToSolve) {
   EXPECT_LT(Distance(Optimize(graph, {}).poses[1], Pose::Identity()), 1e-12);  // nor does one without weight move it
 }
 
-TEST(Optimize, ReturnsWhatIsNotFiniteAsItCame) {
+TEST(Optimize, ReturnsInputThatIsNotFiniteUnchanged) {
   RandomGraphs random(6);
   PoseGraph graph = random.Walk(5, 0.1, false);
   graph.edges[2].T_from_to.translation().x() = std::numeric_limits<double>::quiet_NaN();
@@ -155,7 +155,7 @@ TEST(Optimize, ReturnsWhatIsNotFiniteAsItCame) {
   for (std::size_t i = 0; i < graph.poses.size(); ++i) EXPECT_EQ(result.poses[i].matrix(), graph.poses[i].matrix());
 }
 
-TEST(Optimize, IsNoWorseThanItsStartWhereItMayNotIterateEnough) {
+TEST(Optimize, IsNoWorseThanItsStartAfterTooFewIterations) {
   RandomGraphs random(7);
   PoseGraph graph = random.Walk(40, 0.3, false);
   for (Pose& pose : graph.poses) pose = Exp(random.Tangent(1.0, 1.0));

@@ -28,7 +28,7 @@ TEST(PartsOf, AJoinedGraphIsThatGraph) {
   EXPECT_TRUE(PartsOf({}).empty());
 }
 
-// Poses 0 2 4 and 1 3 are chains, 5 is alone.
+// Poses 0 2 4 and 1 3 form chains, 5 is alone.
 TEST(PartsOf, SharesOutPosesEdgesAndFixedOnes) {
   PoseGraph graph{.poses = std::vector<Pose>(6, Pose::Identity()), .fixed = {3, 4}};
   for (std::size_t i = 0; i < 6; ++i) graph.poses[i].translation().x() = static_cast<double>(i);
@@ -52,8 +52,8 @@ TEST(PartsOf, SharesOutPosesEdgesAndFixedOnes) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(copy.poses[i].matrix(), graph.poses[i].matrix());
 }
 
-// Two walks whose poses take turns in one graph end where each ends alone, to the bit: no part stops early because the
-// other's objective is a million times as large.
+// Two walks with alternating poses in one graph end with the same bits as each walk alone: no part stops early because
+// the objective of the other is a million times as large.
 TEST(PartsOf, AreSolvedAsIfTheOthersWereNotThere) {
   RandomGraphs random(2);
   PoseGraph near = random.Walk(12, 1e-3, false), far = random.Walk(12, 0.3, false), both;

@@ -30,7 +30,7 @@ class RandomGraphs {
     return root * root.transpose() + 0.1 * Matrix6d::Identity();
   }
 
-  // A walk with as many more edges between any two of its poses; edges off by that much.
+  // A walk, and as many more edges between random pairs of its poses. The edges have errors of this size.
   PoseGraph Walk(int poses, double noise, bool planar) {
     PoseGraph graph{.poses = {Pose::Identity()}, .edges = {}, .fixed = {}, .planar = planar};
     for (int i = 1; i < poses; ++i) graph.poses.push_back(graph.poses.back() * Exp(Tangent(1.0, 0.7, planar)));
