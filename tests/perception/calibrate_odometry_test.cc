@@ -13,7 +13,7 @@ namespace {
 
 constexpr CarCalibration kTrue{.wheel_radius_m = 0.0538, .wheelbase_m = 0.341, .steering_offset_rad = 0.02};
 
-// The way as the sum of many short ones, from the car model itself; the distance is between its ends.
+// The path as the sum of many short steps of the car model; the distance is the one between its ends.
 StraightDrive Straight(std::int64_t counts) {
   const double metres_per_count = 2.0 * std::numbers::pi * kTrue.wheel_radius_m / 5120.0;
   const double R = kTrue.wheelbase_m / std::tan(kTrue.steering_offset_rad);

@@ -20,7 +20,7 @@ DepthCameraSheet Sheet() {
   return sheet;
 }
 
-// What a facing wall at a true distance reads, wrap included.
+// The range, wrapped, that a camera reads of a facing wall at a true distance.
 DepthFrame Wall(double distance_m, double albedo) {
   const DepthCameraSheet sheet = Sheet();
   DepthFrame frame;
@@ -83,7 +83,7 @@ TEST(DepthFilter, KeepsAReasonForEveryFlag) {
   frame.flags[3] = kLowSignal;
   frame.range_m[4] = std::numeric_limits<float>::quiet_NaN();
   frame.range_m[5] = 0.0f;
-  frame.flags[6] = kSbiActive;  // no fault
+  frame.flags[6] = kSbiActive;  // not a fault
   const FilteredDepth depth = FilterDepth(frame, Sheet(), {});
   EXPECT_EQ(depth.reasons[0], Rejection::kInvalid);
   EXPECT_EQ(depth.reasons[1], Rejection::kSaturated);
@@ -98,7 +98,7 @@ TEST(DepthFilter, RejectsALonelyPixelAndMendsSmallNoiseByTheMedian) {
   DepthFrame frame = Wall(3.0, 0.5);
   const std::size_t lonely = 5 * 16 + 7, noisy = 8 * 16 + 3;
   frame.range_m[lonely] = 1.0f;
-  frame.amplitude[lonely] *= 9.0f;  // as bright as its range wants
+  frame.amplitude[lonely] *= 9.0f;  // as bright as its range implies
   frame.range_m[noisy] = 3.1f;
   const FilteredDepth depth = FilterDepth(frame, Sheet(), {});
   EXPECT_EQ(depth.reasons[lonely], Rejection::kLonely);
@@ -121,7 +121,7 @@ TEST(DepthFilter, TakesAnEmptyFrame) {
   EXPECT_TRUE(depth.reasons.empty());
 }
 
-TEST(Ghost, NotANumberIsOne) { EXPECT_TRUE(IsGhost(std::nan(""), 1e4, 9e5, 7.5, 0.9)); }
+TEST(Ghost, ANaNIsAGhost) { EXPECT_TRUE(IsGhost(std::nan(""), 1e4, 9e5, 7.5, 0.9)); }
 
 }  // namespace
 }  // namespace merlin

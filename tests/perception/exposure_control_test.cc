@@ -23,7 +23,7 @@ bool Saturates(double distance_m, double integration_s) {
   return 0.725 * 1000.0 * integration_s * 1e6 / (distance_m * distance_m) > 1.5e6;
 }
 
-// A box that fills a fifth of the picture, before a wall. No box: distance 0.
+// A box that fills a fifth of the picture, in front of a wall. Distance 0: no box.
 DepthFrame Seen(double box_m, double wall_m, double integration_s, double time_s) {
   DepthFrame frame;
   frame.stamp = FromSeconds(time_s);
@@ -47,7 +47,7 @@ struct Series {
   bool box_measured = false;        // the box was measured in the last second
 };
 
-// What a camera delivers whose settings hold from the next exposure but one on, as the twin's do at 20 Hz.
+// A camera whose new settings hold from the second-next exposure on, as those of the twin do at 20 Hz.
 Series Drive(double box_m, double wall_m, double begin_s, bool automatic, int frames = 100) {
   ExposureControl control(BoxSheet(), kDepthRate_hz, {.automatic = automatic});
   double now_s = begin_s, next_s = begin_s;

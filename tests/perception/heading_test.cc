@@ -38,7 +38,7 @@ double WorstError_rad(const HeadingConfig& config, double bend_rad, bool* was_be
   return worst_rad;
 }
 
-TEST(Heading, IsNotBentByAFieldThatIs) {
+TEST(Heading, IgnoresADistortedMagneticField) {
   bool was_bent = false;
   const double undisturbed_rad = WorstError_rad({}, 0.0, &was_bent);
   EXPECT_FALSE(was_bent);
@@ -50,7 +50,7 @@ TEST(Heading, IsNotBentByAFieldThatIs) {
   EXPECT_GT(WorstError_rad({.bend_sigmas = 100.0}, 0.1, &was_bent), undisturbed_rad + 0.02);
 }
 
-TEST(Heading, BelievesTheCompassInTheEndWhenTheWheelsWereWrong) {
+TEST(Heading, TrustsTheCompassAgainAfterTheWheelsWereWrong) {
   Heading heading({});
   for (int i = 0; i < 200; ++i) heading.Update(FromSeconds(0.1 * i), 1.0, 0.0);
   for (int i = 200; i < 900; ++i) heading.Update(FromSeconds(0.1 * i), 2.0, 0.0);  // the car was turned by hand
@@ -78,7 +78,7 @@ TEST(Heading, TrustsATrueCompassWhereOdometryDriftsAsMeasured) {
   }
 }
 
-TEST(Heading, GrowsLessSureWithoutReadings) {
+TEST(Heading, BecomesLessCertainWithoutReadings) {
   const HeadingConfig config;
   Heading heading(config);
   heading.Update(Time{0}, 1.0, 0.0);

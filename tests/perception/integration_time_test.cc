@@ -72,7 +72,7 @@ bool AnySaturated(const DepthFrame& frame) {
   return std::ranges::any_of(frame.flags, [](std::uint8_t flags) { return (flags & kSaturated) != 0; });
 }
 
-// What the camera sees after some frames of adaptation, every time on the way being a valid one.
+// The frame after some frames of adaptation. Every integration time on the way must be valid.
 DepthFrame Settled(double distance_m, double albedo, double begin_s, int frames, const IntegrationConfig& config = {}) {
   DepthSettings settings{.integration_s = begin_s};
   for (int i = 0; i < frames; ++i) {

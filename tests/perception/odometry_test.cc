@@ -12,7 +12,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Path of each wheel on a circle about a point on the rear axle's line, from plane geometry; mean over the rear middle's.
+// Mean path of the four wheels over that of the middle of the rear axle, on a circle about a point on the axle's line.
 double MeanOfFourWheels(double steering_rad) {
   const double R = 0.33 / std::tan(steering_rad);
   double sum = 0.0;

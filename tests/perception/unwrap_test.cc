@@ -22,7 +22,7 @@ struct Hit {
 };
 using World = std::function<Hit(const Eigen::Vector3d& ray)>;  // ray: unit, optical frame
 
-// A plane with that unit normal (towards the camera), at that distance from it.
+// A plane with this unit normal (towards the camera), at this distance from it.
 Hit Plane(const Eigen::Vector3d& ray, const Eigen::Vector3d& normal, double distance_m, double albedo) {
   const double cosine = -normal.dot(ray);
   return cosine > 1e-3 ? Hit{distance_m / cosine, albedo * cosine} : Hit{};
@@ -53,7 +53,7 @@ Seen Look(const World& world) {
   return seen;
 }
 
-// Pixels that are accepted at their true range (within 2 %), and at another one.
+// Pixels that are accepted at their true range (within 2 %), and pixels accepted at a wrong one.
 struct Score {
   int right = 0, wrong = 0;
 };
@@ -95,7 +95,7 @@ TEST(Unwrap, AcceptsNothingOfAFacingWallBeyondTheWrap) {
   }
 }
 
-// A person, 0.4 m wide, whose range is what the wall behind reads.
+// A person, 0.4 m wide, at the range that the wall behind seems to have.
 TEST(Unwrap, DoesNotSpreadFromANearObjectToTheGhostBehindIt) {
   for (const double person_m : {0.8, 1.5, 2.0, 2.5}) {
     const Seen seen = Look([=](const Eigen::Vector3d& ray) {
