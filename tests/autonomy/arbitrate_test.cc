@@ -21,7 +21,7 @@ Observation Free() {
   return observation;
 }
 
-// Something this far before the car's front.
+// An obstacle at this distance ahead of the car's front.
 Observation Blocked(double gap_m) {
   Observation observation = Free();
   for (int i = 0; i < 20; ++i)
@@ -97,7 +97,7 @@ TEST(Arbiter, LetsTheOperatorBackAwayFromWhatIsAhead) {
   const Arbitration arbitration = Decide(Drives(-0.5), std::nullopt, &blocked);
   EXPECT_EQ(arbitration.driver, Driver::kManual);
   EXPECT_DOUBLE_EQ(arbitration.command.speed_m_s, -0.5);
-  EXPECT_EQ(Decide(Drives(0.0, 0.3), std::nullopt, &blocked).driver, Driver::kManual);  // steers where it stands
+  EXPECT_EQ(Decide(Drives(0.0, 0.3), std::nullopt, &blocked).driver, Driver::kManual);  // steers while it stands
 }
 
 TEST(Arbiter, StopsAheadWhereItSeesNothing) {

@@ -15,7 +15,7 @@ std::vector<Eigen::Vector2d> Straight() {
   return path;
 }
 
-// A facing patch of points, 0.4 m wide and high, its middle at (x, y, z).
+// A facing patch of points, 0.4 m wide and high, with its middle at (x, y, z).
 Observation Box(double x, double y, double z, double time_s = 0.0) {
   Observation observation;
   observation.stamp = FromSeconds(time_s);
@@ -70,7 +70,7 @@ TEST(Avoid, TakesManySaturatedPixelsAheadForSomethingClose) {
   EXPECT_FALSE(Avoid(kCar, {}).FreeDistance_m(observation, Straight()));
 }
 
-// A frame in which what is ahead saturates, and which a shorter exposure may follow.
+// A frame in which the area ahead saturates, and after which a shorter exposure may follow.
 Observation Glare(double time_s, double driven_m) {
   Observation observation;
   observation.stamp = FromSeconds(time_s);
@@ -108,7 +108,7 @@ TEST(Avoid, KeepsTheNearerOfBothExposures) {
 
 TEST(Avoid, StopsForWhatKeepsSaturatingUnmeasured) {
   Avoid avoid(kCar, {});
-  EXPECT_EQ(avoid.FreeDistance_m(Glare(0.0, 0.0), Straight()), 0.0);  // nothing was measured before
+  EXPECT_EQ(avoid.FreeDistance_m(Glare(0.0, 0.0), Straight()), 0.0);  // no earlier frame measured anything there
   avoid.FreeDistance_m(Box(3.0, 0.0, 0.3, 0.1), Straight());
   EXPECT_GT(*avoid.FreeDistance_m(Glare(0.6, 0.0), Straight()), 2.0);
   EXPECT_EQ(avoid.FreeDistance_m(Glare(0.7, 0.0), Straight()), 0.0);

@@ -10,10 +10,10 @@
 namespace merlin {
 namespace {
 
-constexpr double kRear_m = 0.45;  // of the car, behind its base
+constexpr double kRear_m = 0.45;  // from the base to the rear of the car
 constexpr double kTick_s = 0.05;
 
-// Wants to back along a path, as fast as it may.
+// Asks to back along a path, as fast as allowed.
 Behavior Backing(const std::vector<Eigen::Vector2d>& path_map) {
   return [path_map](const Situation&) {
     return Intent{
@@ -33,7 +33,7 @@ struct End {
   double fastest_m_s = 0.0;
 };
 
-// Half a minute. What the pilot decides comes to the wheels two frames late, as in the car.
+// Drives for half a minute. Decisions of the pilot reach the wheels two frames late, as in the car.
 End Back(const OccupancyGrid& grid, const Behavior& behavior, ToyCar car = {}) {
   Pilot pilot(Car(), behavior, {});
   const VoxelMap map({});

@@ -33,7 +33,7 @@ class DriveInWalls {
             .lost_frames = lost_frames,
             .taken_over = taken_over};
   }
-  // Drives by the pilot for so many frames, and gives what it did, without repetitions.
+  // Drives with the pilot for this many frames, and returns what it did, without repetitions.
   std::vector<Activity> Drive(Pilot& pilot, int frames) {
     std::vector<Activity> activities;
     for (int i = 0; i < frames; ++i) {

@@ -22,8 +22,8 @@ DriveState At(double t_s, double battery_v, double current_a = 0.0, std::int64_t
   return {.stamp = FromSeconds(t_s), .encoder_counts = counts, .current_a = current_a, .battery_v = battery_v};
 }
 
-// A battery of 12 V and 0.1 ohm that feeds the motor of CarWithMotor() through a bridge, solved by hand the other way round:
-// from the duty to what the state says.
+// A battery of 12 V and 0.1 ohm that feeds the motor of CarWithMotor() through a bridge, solved by hand in the opposite
+// direction: from the duty to the values in the state.
 TEST(RestVoltage, IsThatOfTheBatteryBeforeItsResistance) {
   const double emf_v = 100.0 * 0.05;
   for (const double duty : {-0.8, 0.0, 0.3, 0.6, 1.0}) {
@@ -52,7 +52,7 @@ TEST(Energy, WarnsThenStops) {
   EXPECT_EQ(After(11.0, 0.0, 20.0, {.warn_share = 0.0, .stop_share = 0.0}), EnergyLevel::kEnough);
 }
 
-TEST(Energy, TakesNeitherADipNorTheSagUnderLoadForAnEmptyBattery) {
+TEST(Energy, IgnoresAShortDipAndTheSagUnderLoad) {
   EXPECT_EQ(After(10.0, 0.0, 0.3), EnergyLevel::kEnough);
   // 24 A through a blocked motor of 0.5 ohm are 12 V at the motor: all of them through the battery, 1.92 V of sag.
   EXPECT_EQ(After(10.2, 24.0, 20.0), EnergyLevel::kEnough);

@@ -23,7 +23,7 @@ std::optional<double> Free_m(const OccupancyGrid& grid, const std::vector<Eigen:
   return FreeGround_m(grid, FootprintOf(Car()), T_map_base, path_base, kBack);
 }
 
-// The ground is known from the first x on; beside the car more than it needs.
+// Makes the ground known from the first x on, wider than the car needs.
 OccupancyGrid KnownFrom(double x_m) {
   OccupancyGrid grid({});
   SeeFree(grid, x_m, 1.0, -1.0, 1.0);
@@ -94,7 +94,7 @@ TEST(FreeGround, WatchesTheFrontThatSwingsOutOnAnArc) {
 
 TEST(FreeGround, TakesTheGroundBelowTheCarForFree) {
   OccupancyGrid grid = KnownFrom(-3.0);
-  SeeOccupied(grid, -0.2, 0.0);  // an error of the map: the car stands there
+  SeeOccupied(grid, -0.2, 0.0);  // an error of the map: the car itself is there
   EXPECT_FALSE(Free_m(grid, StraightBack(0.02)));
 }
 

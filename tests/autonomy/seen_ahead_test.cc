@@ -1,4 +1,4 @@
-// The obstacle stop with a camera that turns: what it saw ahead is remembered while it looks aside.
+// The obstacle stop with a panning camera: it remembers what it saw ahead while it looks aside.
 #include "autonomy/seen_ahead.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace merlin {
 namespace {
 
 constexpr Footprint kCar{.front_m = 0.45, .half_width_m = 0.16};
-constexpr double kHalfView_rad = 0.0873;  // 10 deg in all
+constexpr double kHalfView_rad = 0.0873;  // 10 deg in total
 const std::vector<Eigen::Vector2d> kAhead{{0.0, 0.0}, {4.0, 0.0}};
 
 // The car at x, after t; the camera turned by yaw.

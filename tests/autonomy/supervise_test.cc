@@ -20,7 +20,7 @@ SupervisedDevice Device(const char* name, bool needed, double rate_hz, Health he
           .heard = kHeard};
 }
 
-// What supervision says at a time of one device.
+// What supervision says about one device at a given time.
 Supervisor After(const SupervisedDevice& device, Time now) {
   Supervisor supervisor;
   supervisor.Watch(now, std::span(&device, 1));
@@ -68,7 +68,7 @@ TEST(Supervise, GoesOnWithoutADeviceItCanDoWithoutAndSaysSo) {
     }
 }
 
-// Measurements go on arriving, and the driver says that they are worth nothing.
+// Measurements still arrive, but the driver reports that they are unusable.
 TEST(Supervise, BelievesABadStatusAlthoughMeasurementsArrive) {
   SupervisedDevice camera = Device("depth camera", true, 20.0, Health::kFaulty);
   camera.heard = kHeard + std::chrono::milliseconds(700);
@@ -76,7 +76,7 @@ TEST(Supervise, BelievesABadStatusAlthoughMeasurementsArrive) {
   EXPECT_EQ(HealthOf(camera, kHeard + std::chrono::milliseconds(700)), Health::kFaulty);
 }
 
-// A status that was bad long ago and is ok again says nothing.
+// A status that was bad long ago and is ok again has no effect.
 TEST(Supervise, ForgivesAHiccup) {
   SupervisedDevice camera = Device("depth camera", true, 20.0);
   camera.status.since = kHeard - std::chrono::seconds(5);

@@ -10,7 +10,7 @@
 
 namespace merlin {
 
-// Does what it is told at once: x' = v cos(yaw), y' = v sin(yaw), yaw' = v tan(steering) / wheelbase.
+// Follows commands at once: x' = v cos(yaw), y' = v sin(yaw), yaw' = v tan(steering) / wheelbase.
 struct ToyCar {
   double x_m = 0.0, y_m = 0.0, yaw_rad = 0.0;
   double wheelbase_m = 0.33;

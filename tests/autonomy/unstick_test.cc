@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTick_s = 0.1;
 
-// A car at a place, in whatever a frame says of it; time goes on by a tenth of a second a call.
+// A car at a position, with a frame that says what the test wants; each call advances time by a tenth of a second.
 class Standing {
  public:
   Situation Next() {
@@ -52,7 +52,7 @@ TEST(Unstick, GivesUpAfterFifteenSecondsOfWaiting) {
   }
 }
 
-TEST(Unstick, LetsACarStandThatIsDoneOrTurnsOrWaitsForItsHeadingOrIsDrivenByHand) {
+TEST(Unstick, DoesNotGiveUpACarThatIsDoneTurnsWaitsForItsHeadingOrIsDrivenManually) {
   for (const Activity activity : {Activity::kIsDone, Activity::kTurnsOnTurntable, Activity::kWaitsForHeading}) {
     Standing car;
     Unstick unstick({});

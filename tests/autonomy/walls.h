@@ -26,7 +26,7 @@ class Walls {
     map.Insert(points_, T_map_plan_, 0.0);
     return map;
   }
-  // What a camera at the plan's origin, free all around, has carved.
+  // The grid as a camera at the plan's origin with a free view in all directions would have carved it.
   OccupancyGrid Grid() const {
     OccupancyGrid grid({});
     std::vector<Point> points;

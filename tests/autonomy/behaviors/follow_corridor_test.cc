@@ -71,7 +71,7 @@ TEST(FollowCorridor, PlansNoTurnInADeadEnd) {
   EXPECT_EQ(Decide(behavior, DeadEnd(0.0), FromXyYaw(2.5, 0.0, 0.0)).activity, Activity::kFollowsCorridor);
 }
 
-// The first frame at which it is done, of a circle to one side of 5 m radius that begins along x.
+// The first frame at which the task is done, on a circle of 5 m radius to one side that begins along x.
 int DoneAt(int laps, double side, int steps_per_lap, int steps) {
   FollowCorridor behavior(laps, {});
   const Walls walls(0.0);

@@ -10,7 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
-// What the behaviour says while the turntable turns from one angle to the next, in steps of at most 0.1 rad.
+// What the behaviour returns while the turntable turns from one angle to the next, in steps of at most 0.1 rad.
 Intent After(TurnOnTurntable& behavior, double from_rad, double to_rad) {
   const VoxelMap map({});
   const OccupancyGrid grid({});
