@@ -1,5 +1,5 @@
-// What every reader of a cloud keeps: a file is refused, each fault in one sentence, or taken whole, and never more of
-// it than is there.
+// Rules for every reader of a cloud: it rejects a file, with one sentence for each fault, or it takes all of it, and
+// never more than the file has.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace merlin::fuzz {
 
-// more: what behind a sound file makes it one that is refused, or taken with a warning.
-inline constexpr std::size_t kPacked = 88;  // bytes that LZF may make of one
+// more: bytes that, appended to a valid file, make it invalid, or valid with a warning.
+inline constexpr std::size_t kPacked = 88;  // most bytes that LZF can make of one
 inline void CheckCloud(CloudFile (*parse)(std::string_view, const std::string&), std::string_view text,
                        std::string_view more) {
   const auto file = TakenOrRefused(parse, text);

@@ -1,4 +1,4 @@
-// The 3DM's poller: whatever answers, or comes unasked, the next poll that is answered well gives its reading.
+// The 3DM's poller: whatever bytes arrive, the next poll that gets a correct answer gives its reading.
 #include "robot/protocol/compass_3dm.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ void Check(BytesView input, bool with_checksum) {
     fuzz::Expect(std::ranges::equal(EncodeReply(*counts, with_checksum), input), "a reply is said again byte by byte");
   Poller poller({.with_checksum = with_checksum});
   Time now{0};
-  // The first byte of each piece: how long it lets wait, and how long it is.
+  // The first byte of each piece says how long to wait, and how long the piece is.
   for (BytesView rest = input; !rest.empty();) {
     const std::size_t size = std::min<std::size_t>(rest[0] % 16, rest.size() - 1);
     now += std::chrono::milliseconds(rest[0] / 4);

@@ -1,13 +1,13 @@
-// Gives libFuzzer the target's seeds to begin with. Without them it would first have to find out what a well-formed
-// input looks like, and would spend its minute on headers that no decoder reads beyond.
+// Gives libFuzzer the seeds of the target to start with. Without them it would spend its minute on finding out what a
+// well-formed header looks like.
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "tests/fuzz/target.h"
 
-// Called by libFuzzer before it reads its arguments. Writes the seeds into the folder "<program>-corpus", made anew, and
-// adds that folder to the arguments: libFuzzer begins with the files of the folders that it is given.
+// libFuzzer calls this before it reads its arguments. Writes the seeds into a new folder "<program>-corpus" and adds it
+// to the arguments, because libFuzzer starts with the files of the folders that it is given.
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   static std::string folder = std::filesystem::absolute((*argv)[0]).string() + "-corpus";
   std::filesystem::remove_all(folder);

@@ -1,5 +1,5 @@
-// The wire between the twin and its vendor library: what the decoder accepts it understands whole (it encodes to the
-// very bytes), and it never reads or asks for more than there can be.
+// The protocol between the twin and its vendor library: a message that the decoder accepts encodes to the same bytes,
+// and the decoder never reads or asks for more than there can be.
 #include "robot/emulated/depth_wire.h"
 
 #include <algorithm>

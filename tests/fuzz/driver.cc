@@ -1,6 +1,6 @@
-// Runs a fuzz target without libFuzzer, the same way each time: driver COUNT [--expect-finding]
-// COUNT inputs: random bytes, and mutations of what the target calls its seeds. Each input ends at a page that nobody
-// may read, so that reading one byte too far is found without a sanitizer. With --expect-finding the target must die.
+// Runs a fuzz target without libFuzzer, always in the same way: driver COUNT [--expect-finding]. It tries COUNT inputs:
+// random bytes, and mutations of the target's seeds. Each input ends at a page that cannot be read, so that reading one
+// byte too far is found without a sanitizer. With --expect-finding the target must crash.
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@ using merlin::Bytes;
 
 constexpr std::size_t kLongest_bytes = 256;
 
-// Memory whose end is the end of what may be read.
+// Memory that ends where a page begins that cannot be read.
 class GuardedMemory {
  public:
   GuardedMemory() : page_(static_cast<std::size_t>(sysconf(_SC_PAGESIZE))) {
@@ -100,7 +100,7 @@ int RunAll(long count) {
   return 0;
 }
 
-// In a child, whose death is the finding.
+// Runs in a child process, whose crash is the finding.
 int ExpectFinding(long count) {
   const pid_t child = fork();
   if (child < 0) return 3;

@@ -1,5 +1,5 @@
-// g2o's text: each is refused in one sentence, or taken whole: a graph without holes, which can be written and read
-// again.
+// Text of g2o files: it is rejected, each fault in one sentence, or accepted completely, as a graph without gaps, which
+// can be written and read again.
 #include <algorithm>
 #include <functional>
 
@@ -30,7 +30,7 @@ void Check(std::string_view text) {
     fuzz::Expect(edge.from != edge.to, "edges join two");
     fuzz::Expect(edge.T_from_to.matrix().allFinite() && edge.information.allFinite(), "edges are finite");
   }
-  // Chained poses and mended matrices may lie beyond what a file may say.
+  // Chained poses and repaired matrices may exceed the limits for numbers in a file.
   if (!file->has_poses || !file->warnings.empty()) return;
   const auto again = fuzz::TakenOrRefused(ParseG2o, ToG2o(*file));
   fuzz::Expect(again && again->ids == file->ids && again->graph.edges.size() == graph.edges.size(), "it is read again");

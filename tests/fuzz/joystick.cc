@@ -1,4 +1,4 @@
-// Joystick events: whatever a read gives, axes stay within their range, and the next read is understood.
+// Joystick events: whatever a read gives, axes stay within their range, and the next read is decoded correctly.
 #include "robot/protocol/joystick.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Both directions of the microcontroller's line: whatever comes, a good frame behind it is read, the counters stay
-// sound, and what was understood can be said again.
+// Both directions of the microcontroller's line: whatever arrives, a good frame after it is decoded, the counters stay
+// consistent, and every decoded message can be encoded again.
 #include "robot/protocol/microcontroller.h"
 
 #include <variant>

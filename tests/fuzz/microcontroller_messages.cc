@@ -1,5 +1,5 @@
-// The messages within sound frames, which random bytes of the wire never are: the first byte is the type, the others
-// are the payload. Only what fits its type and direction is a message, and what was understood can be said again.
+// The messages in valid frames, which random bytes practically never form: the first byte is the type, the others are
+// the payload. Only what fits its type and direction is accepted, and what was decoded can be encoded again.
 #include <algorithm>
 
 #include "robot/protocol/microcontroller.h"
@@ -33,7 +33,7 @@ void Check(std::uint8_t type, BytesView payload) {
   const auto received = Read<Message>(EncodeFrame({type, 7, Bytes(payload.begin(), payload.end())}));
   fuzz::Expect((received.size() == 1) == Fits(Message(), type, payload), "what fits is a message, and nothing else");
   if (received.empty()) return;
-  // Twice: a command of no duration is said as a stop, whatever its speed was.
+  // Encoded twice, because a command of no duration is encoded as a stop, whatever its speed was.
   const auto said = Read<Message>(Encode(received[0].message, 8));
   fuzz::Expect(said.size() == 1, "a message is said again");
   const auto again = Read<Message>(Encode(said[0].message, 9));

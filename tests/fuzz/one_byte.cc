@@ -1,4 +1,4 @@
-// The one-byte command: each byte is a command within the limits, and says itself again.
+// The one-byte command: each byte decodes to a command within the limits, which encodes to the same byte.
 #include "robot/protocol/one_byte.h"
 
 #include <cmath>

@@ -1,5 +1,6 @@
-// The operator's message: whatever comes, a good frame behind it is read, and what was understood can be said again.
-// The input comes as bytes of the wire, and as the payload of a sound frame, which random bytes never are.
+// The operator's message: whatever arrives, a good frame after it is decoded, and what was decoded can be encoded
+// again. The input is used as bytes of the wire, and as the payload of a valid frame, which random bytes practically
+// never form.
 #include "robot/protocol/operator.h"
 
 #include <algorithm>

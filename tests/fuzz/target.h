@@ -1,4 +1,4 @@
-// What a fuzz target is: libFuzzer's function, the seeds that every driver begins with, and a check that ends the
+// The parts of a fuzz target: libFuzzer's function, the seeds that every driver starts with, and a check that ends the
 // program.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace merlin::fuzz {
 // Well-formed inputs, to be mutated.
 std::vector<Bytes> Seeds();
 
-// Also where asserts are off.
+// Also checks in builds without assert.
 inline void Expect(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "broken: %s\n", what);

@@ -18,14 +18,13 @@ inline std::string_view ToText(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-// What readers trip over, for seeds: the driver puts seeds into one another.
+// Fragments that often break readers, as seeds: the driver inserts seeds into one another.
 inline void AddWords(std::vector<Bytes>& seeds) {
   for (const char* word : {"nan", "inf", "-1", "0", "1e308", "1e-320", "-", "99999999999999999999", "\n", " ", "#"})
     seeds.push_back(ToBytes(word));
 }
 
-// The reader's answer; none where it refuses, which it does in a line a fault, each of which begins with the file's
-// name.
+// The reader's result; none if it rejects the text. Each line of its message must then begin with the name of the file.
 template <class Parse>
 auto TakenOrRefused(Parse parse, std::string_view text) -> std::optional<decltype(parse(text, std::string()))> {
   try {

@@ -1,4 +1,5 @@
-// TUM's text: each is refused in one sentence, or taken whole: finite poses at stamps that ascend.
+// Text of TUM files: it is rejected, each fault in one sentence, or accepted completely, with finite poses and
+// ascending stamps.
 #include <algorithm>
 #include <functional>
 

@@ -1,5 +1,5 @@
-// A serial cable between a device's port and the program, that a test can pull: the program's port is gone then, and
-// the device hears nothing more.
+// A serial cable between a device and the program's port, which a test can unplug. The port then disappears, and the
+// device receives nothing more.
 #pragma once
 
 #include <atomic>
@@ -15,7 +15,7 @@ namespace merlin {
 
 class Cable {
  public:
-  // link: the name of the program's port; the same whenever it is plugged in.
+  // link: the name of the program's port, which stays the same each time it is plugged in.
   Cable(const std::string& device_port, int baud, const std::filesystem::path& link)
       : device_({.port = device_port, .baud = baud}), program_(link) {
     device_.Open();

@@ -1,4 +1,4 @@
-// A named pipe that says what a joystick of the Linux kernel would.
+// A named pipe that delivers events like a joystick device of the Linux kernel.
 #pragma once
 
 #include <fcntl.h>
@@ -20,7 +20,7 @@ class JoystickPipe {
   // As linux/joystick.h has it: u32 time, s16 value, u8 type (1 button, 2 axis), u8 number.
   void Axis(std::uint8_t number, std::int16_t value) { Write(value, 2, number); }
   void Button(std::uint8_t number, bool down) { Write(down ? 1 : 0, 1, number); }
-  // Opens for writing; somebody must be reading.
+  // Opens for writing; there must be a reader.
   void Open() {
     if (fd_ < 0) fd_ = open(path_.c_str(), O_WRONLY | O_NONBLOCK);
   }

@@ -1,4 +1,4 @@
-// Broken texts for readers: cut, overwritten, shuffled and repeated, from a fixed seed.
+// Broken texts for tests of readers: cut, overwritten, shuffled and repeated, from a fixed seed.
 #pragma once
 
 #include <cstddef>

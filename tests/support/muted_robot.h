@@ -1,5 +1,5 @@
-// A robot whose devices can be silenced: what they measure from then on is thrown away, and their status goes on saying
-// what it said. Their owner must outlive this.
+// A robot whose devices can be silenced: later measurements are dropped, and the status stays what it was. The owner of
+// the devices must outlive this.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ class Muted : public Device {
   DeviceStatus Status() const override { return status ? *status : device_->Status(); }
 
   bool muted = false;
-  std::optional<DeviceStatus> status;  // said instead of the device's own
+  std::optional<DeviceStatus> status;  // reported instead of the device's own
 
  protected:
   Device* device_;

@@ -1,4 +1,4 @@
-// A 64x48 PMD camera for tests. All its numbers are round, or those of the predictions that tests compare with.
+// A 64x48 PMD camera for tests. Its numbers are round, or those of the predictions that tests compare with.
 #pragma once
 
 #include "robot/types/depth_camera.h"
@@ -18,7 +18,7 @@ inline DepthCameraSheet Pmd3k() {
   return sheet;
 }
 
-// The same with other pixels, and with the limits of its exposure.
+// The same camera with another image and other limits of its exposure.
 inline DepthCameraSheet ExposingPmd3k(const CameraModel& camera) {
   DepthCameraSheet sheet = Pmd3k();
   sheet.camera = camera;

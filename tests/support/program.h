@@ -1,4 +1,4 @@
-// A program that runs beside the test, as a user would start it in a terminal of its own.
+// A program that runs beside the test, as if a user had started it in another terminal.
 #pragma once
 
 #include <fcntl.h>
@@ -16,7 +16,7 @@ namespace merlin {
 
 class Program {
  public:
-  // In folder, whose file "<name>.txt" takes all that it says. One that still runs at the end is killed.
+  // Starts it in folder, where the file "<name>.txt" gets its output. Kills it in the end if it still runs.
   Program(const std::string& name, const std::string& binary, std::vector<std::string> arguments,
           const std::filesystem::path& folder)
       : said_(folder / (name + ".txt")) {
@@ -41,7 +41,7 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void Signal(int number) const { kill(child_, number); }
-  // How it ended: 128 and the signal's number where one ended it.
+  // Its exit code; 128 plus the signal's number if a signal ended it.
   int Wait() {
     int status = 0;
     waitpid(child_, &status, 0);

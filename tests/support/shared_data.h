@@ -1,4 +1,4 @@
-// Real data that lies beside the project; tests that need it are skipped by name where it is absent.
+// Real data stored beside the project. Tests that need it are skipped by name if it is missing.
 #pragma once
 
 #include <cstdlib>

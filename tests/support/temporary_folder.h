@@ -1,4 +1,4 @@
-// A folder of the test's own, gone when the test ends.
+// A temporary folder that is removed with the object.
 #pragma once
 
 #include <stdlib.h>

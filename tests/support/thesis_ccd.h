@@ -1,5 +1,5 @@
 // The colour camera of "Autonomous navigation and mapping of mobile robots based on 2D/3D cameras combination", thesis,
-// University of Siegen, about 2011, as it was calibrated there: what many tests look through.
+// University of Siegen, about 2011, with the calibration found there. Many tests use it.
 #pragma once
 
 #include "robot/types/camera_model.h"

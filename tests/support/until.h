@@ -1,4 +1,4 @@
-// For tests of threads: waits for a condition, not for a time. The deadline only ends a test that has failed.
+// Helpers for tests of threads: wait for a condition instead of a time. The deadline only ends a test that has failed.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ bool Until(Condition condition) {
   return true;
 }
 
-// Stands still until a test moves it.
+// A clock that stands still until the test moves it.
 class HandClock final : public Clock {
  public:
   Time Now() const override { return Time(now_.load()); }

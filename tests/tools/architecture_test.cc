@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
 
-// Longer names first: the first that a path starts with is its room.
+// Longer names first: a path belongs to the first of these that it starts with.
 const std::vector<std::pair<std::string, Strings>> kRoomsAndWhatTheyKnow{
     {"robot/base/", {"robot/base/"}},
     {"robot/types/", {"robot/types/", "robot/base/"}},
@@ -77,7 +77,7 @@ Strings Matches(const std::string& text, const std::string& pattern) {
   return found;
 }
 
-// A header of the standard library: one word.
+// A header of the standard library: a single word.
 bool IsStandard(const std::string& header) { return header.find_first_of("/.") == std::string::npos; }
 
 // The wrong #includes of one source file, each "file: header".
@@ -103,7 +103,7 @@ std::map<std::string, std::string> Libraries(const std::map<std::string, std::st
   return libraries;
 }
 
-// The wrong links of the CMakeLists.txt files (path to text), each "file: target".
+// The wrong links in the CMakeLists.txt files (path to text), each as "file: target".
 Strings WrongLinks(const std::map<std::string, std::string>& cmake_lists) {
   const std::map<std::string, std::string> libraries = Libraries(cmake_lists);
   Strings wrong;
@@ -121,10 +121,10 @@ Strings WrongLinks(const std::map<std::string, std::string>& cmake_lists) {
   return wrong;
 }
 
-// Text without comments: what they mention is no arrow.
+// Text without comments, because a header that is only mentioned is not a dependency.
 std::string WithoutHashComments(const std::string& text) { return std::regex_replace(text, std::regex("#[^\n]*"), ""); }
 
-// Path from the root to text, of the tree's files that pass.
+// The files of the tree that pass the filter: from path (relative to the root) to text.
 template <class Wanted>
 std::map<std::string, std::string> Read(Wanted wanted) {
   std::map<std::string, std::string> files;

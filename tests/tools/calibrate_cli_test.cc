@@ -1,4 +1,4 @@
-// `merlin calibrate` and `merlin bench physics` as their users meet them.
+// `merlin calibrate` and `merlin bench physics` as users run them.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// `merlin camera` and `merlin bench` as their users meet them.
+// `merlin camera` and `merlin bench` as users run them.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 namespace merlin {
 namespace {
 
-// Exit 2, one sentence that has this part, no file.
+// Expects exit code 2, one sentence with this part, and no file.
 void ExpectRefused(const std::string& arguments, const std::string& part, const std::filesystem::path& folder) {
   const Outcome outcome = Merlin("camera " + arguments, folder);
   EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.said;
@@ -74,7 +74,7 @@ TEST(CameraCli, SaysWhatASheetIsThatIsNoTimeOfFlightCamera) {
   ExpectRefused("webcam.yaml --wall 2", "webcam.yaml: this is a colour camera; " + expected, folder.path());
   std::ofstream(folder.path() / "drive.yaml") << "name: drive\nroom: hall\nduration_s: 5\n";
   ExpectRefused("drive.yaml --wall 2", "drive.yaml: this is no camera; " + expected, folder.path());
-  // A sheet of the right kind keeps being read key by key.
+  // A data sheet of the right kind is read key by key, as before.
   std::ofstream(folder.path() / "half.yaml") << "name: half\nwidth_px: 64\nfrequencies_mhz: [20]\n";
   const Outcome outcome = Merlin("camera half.yaml --wall 2", folder.path());
   EXPECT_EQ(outcome.code, 2);
@@ -188,7 +188,7 @@ TEST(CameraCli, SameSeedSameBytesForAnyNumberOfThreads) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "a")) {
     const std::string name = entry.path().filename();
-    if (name == "result.json") continue;  // has the time it took
+    if (name == "result.json") continue;  // contains the time that it took
     EXPECT_TRUE(Contents(entry.path()) == Contents(folder.path() / "b" / name)) << name;
     ++files;
   }

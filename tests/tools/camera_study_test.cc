@@ -1,5 +1,5 @@
-// The parts of `merlin camera` that need no camera: array files, statistics of ranges that wrap, axes, what is inside
-// what.
+// The parts of `merlin camera` that need no camera: array files, statistics of ranges that wrap, axes, and which body a
+// point lies in.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -137,7 +137,7 @@ TEST(FigureCsv, HoldsEveryPointOfEverySeries) {
   EXPECT_EQ(ToPng(figure).substr(1, 3), "PNG");
 }
 
-// A world with one of each, each 10 m from the others, turned.
+// A world with one geom of each type, 10 m apart, rotated.
 class InsideTest : public testing::Test {
  protected:
   InsideTest() {

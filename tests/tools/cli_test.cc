@@ -1,4 +1,4 @@
-// The program as its users meet it: exit codes, one sentence, nothing half-written.
+// The program as users run it: exit codes, messages of one sentence, no half-written files.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>

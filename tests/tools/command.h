@@ -1,4 +1,4 @@
-// Runs a command as a user would type it, and tells how it ended.
+// Runs a command as a user would type it, and captures how it ends.
 #pragma once
 
 #include <sys/wait.h>
@@ -11,7 +11,7 @@
 namespace merlin {
 
 struct Outcome {
-  int code = -1;     // 128 and the signal's number where one ended it
+  int code = -1;     // 128 plus the signal's number if a signal ended it
   std::string said;  // its standard output, and what the command itself sends there
 };
 
@@ -26,7 +26,7 @@ inline Outcome Run(const std::string& command, const std::filesystem::path& fold
   return outcome;
 }
 
-// The program under test with these arguments; streams: where its own go.
+// Runs the program under test with these arguments. streams: redirections of its output.
 inline Outcome Merlin(const std::string& arguments, const std::filesystem::path& folder,
                       const std::string& streams = "2>&1") {
   return Run("'" MERLIN_BINARY "' " + arguments + " " + streams, folder);

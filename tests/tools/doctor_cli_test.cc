@@ -1,4 +1,4 @@
-// `merlin doctor` sees what a run sees, and ends as a run would.
+// `merlin doctor` finds what a run would find, and ends with the exit code of a run.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -38,7 +38,7 @@ TEST(DoctorCli, CountsWhatIsInMerlinHome) {
   EXPECT_NE(there.said.find(rooms_there), std::string::npos) << there.said;
   fs::remove(folder.path() / "home/models/materials.yaml");
   EXPECT_EQ(WithHome("home", "doctor", folder.path()).code, 2);
-  EXPECT_EQ(WithHome("", "doctor", folder.path()).code, here.code);  // empty is as unset
+  EXPECT_EQ(WithHome("", "doctor", folder.path()).code, here.code);  // empty counts as not set
 }
 
 TEST(DoctorCli, EndsWithTwoWhereMerlinHomeIsWrongAsARunDoes) {

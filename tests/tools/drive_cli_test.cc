@@ -1,4 +1,4 @@
-// `merlin drive` as its users meet it.
+// `merlin drive` as users run it.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -44,7 +44,7 @@ TEST(DriveCli, RefusesWhatItCannotDriveWith) {
   expect("corridor_lop --keyboard", 2, "corridor_loop");
 }
 
-// A person at a terminal: the program in a session of its own, its keyboard in our hands.
+// A person at a terminal: the program runs in a session of its own, and the test types the keys.
 class Person {
  public:
   Person(const std::string& arguments, const std::filesystem::path& folder) {
@@ -69,7 +69,7 @@ class Person {
   void Type(const std::string& text) const {
     EXPECT_EQ(write(keyboard_, text.data(), text.size()), ssize_t(text.size()));
   }
-  // Reads the screen until it shows that; false: the program ended first.
+  // Reads the screen until it shows this text; false if the program ended first.
   bool Sees(const std::string& text) {
     std::array<char, 4096> buffer;
     while (seen.find(text) == std::string::npos) {

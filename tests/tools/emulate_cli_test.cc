@@ -1,4 +1,4 @@
-// `merlin emulate`: what it refuses before it simulates anything. What it serves: two_programs_test.cc.
+// `merlin emulate`: what it rejects before the simulation starts. What it serves: two_programs_test.cc.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// `merlin optimize` and `merlin eval` as their users meet them.
+// `merlin optimize` and `merlin eval` as users run them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -106,7 +106,7 @@ TEST(OptimizeCli, EndsAtTheKnownOptimumOfAPublicGraph) {
   EXPECT_NEAR(Json("optimize '" + graph.string() + "' --objective b", folder.path())["objective_b"], 45.004696, 1e-6);
 }
 
-// A straight of 3 m seen 1 cm too far left and right by turns, and turned as a whole.
+// A straight path of 3 m, seen 1 cm too far left and right alternately, and rotated as a whole.
 struct Straight {
   TemporaryFolder folder;
   Straight() {
@@ -176,7 +176,7 @@ TEST(EvalCli, AgreesWithEvoOnARealTrajectory) {
   EXPECT_NEAR(figures["rpe_rotation_rmse_deg"], 0.818638863, 1e-6);
 }
 
-// What an evo program prints; with its settings in the folder, not in the user's home.
+// The output of an evo program, with its settings in the test's folder instead of the user's home.
 std::string Evo(const std::string& program, const std::string& arguments, const std::filesystem::path& folder) {
   const std::string command = "HOME=\"$PWD\" '" + OracleProgram(program).string() + "' ";
   const Outcome outcome = Run(command + arguments + " 2>&1", folder);
@@ -184,7 +184,7 @@ std::string Evo(const std::string& program, const std::string& arguments, const 
   return outcome.said;
 }
 
-// Of a line "   rmse\t0.013473".
+// The value in a line such as "   rmse\t0.013473".
 double Figure(const std::string& said, const std::string& name) {
   const std::size_t at = said.find(name + "\t");
   return at == std::string::npos ? NAN : std::stod(said.substr(at + name.size() + 1));

@@ -33,7 +33,7 @@ TEST(JsonCli, CalibrateNamesItsFileWhateverIsInTheName) {
   EXPECT_TRUE(json["steering_offset_rad"].is_number());
 }
 
-// Of one floor alone: each takes two seconds.
+// Only one floor, because each takes two seconds.
 TEST(JsonCli, CalibrateStudyIsAList) {
   namespace fs = std::filesystem;
   const TemporaryFolder folder;
@@ -104,7 +104,7 @@ TEST(JsonCli, RunPutsItsNoteOnStandardError) {
   EXPECT_NE(Contents(folder.path() / "said").find("--gl is off"), std::string::npos);
 }
 
-TEST(JsonCli, NothingIsOnTurntableardOutputWhereTheInputIsBad) {
+TEST(JsonCli, PrintsNothingToStandardOutputForBadInput) {
   const TemporaryFolder folder;
   for (const char* arguments :
        {"run none", "camera none --wall 2", "camera pmd_3k_s", "calibrate odometry none.yaml", "calibrate odometry",

@@ -1,4 +1,4 @@
-// `merlin list`, and progress, as they fit a terminal.
+// `merlin list` and progress lines fit the terminal.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The program of the car as a user types it: what it refuses, and how it ends.
+// The car's own program as users run it: what it rejects, and how it ends.
 #include <gtest/gtest.h>
 
 #include <algorithm>

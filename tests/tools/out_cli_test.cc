@@ -1,4 +1,4 @@
-// --out: the same bad path gives the same exit code and one sentence in every subcommand, before any work.
+// --out: a bad path gives the same exit code and one sentence in every subcommand, before any work starts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ class OutCli : public testing::Test {
   std::set<std::string> before_;
 };
 
-TEST_F(OutCli, NothingCanBeMadeThere) {
+TEST_F(OutCli, RejectsAFolderInWhichNothingCanBeMade) {
   for (const std::vector<std::string>& commands : {folder_commands_, file_commands_})
     for (const std::string& command : commands)
       for (const std::string& out :
@@ -68,7 +68,7 @@ TEST_F(OutCli, NothingCanBeMadeThere) {
         ExpectRefused(command, out);
 }
 
-TEST_F(OutCli, AFileIsNoFolderAndAFolderNoFile) {
+TEST_F(OutCli, RejectsAFileForAFolderAndAFolderForAFile) {
   for (const std::string& command : folder_commands_)
     for (const char* out : {"file", "mine"}) ExpectRefused(command, out);
   for (const std::string& command : file_commands_)

@@ -1,4 +1,4 @@
-// `merlin register` as its users meet it.
+// `merlin register` as users run it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,8 +76,8 @@ TEST(RegisterCli, WritesTheAlignedSourceWhole) {
   EXPECT_EQ(Register("s.csv t.csv --out no/such/folder.ply", folder).code, 2);
 }
 
-// The corner at coordinates of a national grid: what is written lies where the printed pose, in doubles, puts it, be it
-// the machine's or the text's, and the pose about the corner is that of the corner at the origin.
+// The corner at coordinates of a national grid. The written cloud lies where the printed pose, in doubles, puts it,
+// both in JSON and in text; relative to the corner the pose is that of the corner at the origin.
 TEST(RegisterCli, KeepsATenthOfAMillimetreFarFromTheOrigin) {
   const TemporaryFolder folder;
   const Pose far(Eigen::Translation3d(433000.0, 5614000.0, 250.0)), T = FromXyYaw(0.05, -0.03, 0.04);

@@ -53,7 +53,7 @@ TEST_F(SweepCli, RunsEveryRowOnEverySeedAndLeavesItsTable) {
   EXPECT_NE(Contents(out / "table.md").find("| dark | 2/2 |"), std::string::npos);
   EXPECT_NE(outcome.said.find("0 of 4 runs were taken over"), std::string::npos) << outcome.said;
 
-  // The same again takes all over; another setting of one row takes over the other row's.
+  // The same sweep again reuses all runs. With another setting in one row it reuses those of the other row.
   const auto before = fs::last_write_time(out / "plain-1/result.json");
   EXPECT_NE(Sweep("two.yaml").said.find("4 of 4 runs were taken over"), std::string::npos);
   std::string other = kTwoRows;
@@ -149,7 +149,8 @@ TEST_F(SweepCli, TheThreeShortSettingsKeepTheirLimits) {
 }
 
 TEST_F(SweepCli, TheEnvelopeIsAWholeSweep) {
-  const Outcome outcome = Sweep("envelope --row none");  // read and checked whole before the row is looked for
+  const Outcome outcome =
+      Sweep("envelope --row none");  // the file is read and checked completely before the row is looked up
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(Lines(outcome.said), 1) << outcome.said;
 }

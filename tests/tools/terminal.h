@@ -1,4 +1,4 @@
-// A terminal of so many columns, as a person has it before him.
+// A terminal with a given number of columns.
 #pragma once
 
 #include <pty.h>
@@ -14,7 +14,7 @@
 
 namespace merlin {
 
-// Runs a shell command on it: how it ended, and all that was sent to the screen. columns 0: the terminal does not tell.
+// Runs a shell command on it. Returns how it ended, and all output to the screen. columns 0: the width is not known.
 inline Outcome OnTerminal(const std::string& command, unsigned short columns, const std::filesystem::path& folder) {
   winsize size{.ws_row = 24, .ws_col = columns, .ws_xpixel = 0, .ws_ypixel = 0};
   int screen = -1;
@@ -35,7 +35,7 @@ inline Outcome OnTerminal(const std::string& command, unsigned short columns, co
   return outcome;
 }
 
-// What stood on each line, renewed ones included, without the codes that renew it.
+// What each line showed, including lines that were overwritten, without the control codes.
 inline std::vector<std::string> ScreenLines(const std::string& sent) {
   std::vector<std::string> lines{""};
   for (std::size_t i = 0; i < sent.size(); ++i) {

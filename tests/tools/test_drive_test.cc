@@ -1,4 +1,4 @@
-// A twin that is off its description calibrates itself, tape and play and all.
+// A twin that differs from its description calibrates itself, with errors of the tape and backlash.
 #include "tools/calibrate/test_drive.h"
 
 #include <gtest/gtest.h>

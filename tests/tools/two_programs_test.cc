@@ -1,5 +1,5 @@
-// The swap to the car, end to end: one program serves the simulated car's devices, another that links no simulation
-// drives them as it would the real ones.
+// The twin in place of the car, end to end: one program serves the simulated car's devices; another program, which
+// links no simulation, drives them as it would drive the real ones.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// Without colour: drawing in software beside two programs would ask a slow machine for too much.
+// Without colour, because software rendering beside two programs would overload a slow machine.
 class TwoPrograms : public testing::Test {
  protected:
   TwoPrograms()
@@ -41,7 +41,7 @@ class TwoPrograms : public testing::Test {
   }
   Json Result(const std::string& out) const { return Json::parse(Contents(folder_.path() / out / "result.json")); }
   Trajectory Truth() const { return ParseTum(Contents(folder_.path() / "truth.tum"), "truth.tum").trajectory; }
-  // When the emulator said that, in seconds of its world; negative: it did not.
+  // The time [s] of the simulated world at which the emulator said this; negative if it did not.
   double TimeOf(const std::string& text) const {
     std::smatch match;
     const std::string said = emulator_.Said();
@@ -103,10 +103,10 @@ TEST_F(TwoPrograms, TheDriverNamesTheDeviceThatHasGoneWithTheEmulator) {
   emulator_.Signal(SIGKILL);
   const auto killed = std::chrono::steady_clock::now();
   EXPECT_EQ(driver->Wait(), 1) << driver->Said();
-  // One second until it knows, and what judging takes: the promise itself is about time.
+  // One second to notice, plus the time for judging. This promise is about wall-clock time.
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - killed).count(), 3.0);
   EXPECT_TRUE(driver->HasSaid("microcontroller on " + port[1].str() + ": the port has gone")) << driver->Said();
-  EXPECT_TRUE(driver->HasSaid("depth.socket")) << driver->Said();  // whether it is still there or not
+  EXPECT_TRUE(driver->HasSaid("depth.socket")) << driver->Said();  // whether or not it still exists
   EXPECT_EQ(Result("drive")["verdict"], "fail");
   EXPECT_NE(Result("drive")["fault"].get<std::string>().find("the port has gone"), std::string::npos);
 }

@@ -217,7 +217,7 @@ TEST(Pcd, LeavesBytesBehindBinaryDataWithAWarning) {
   EXPECT_EQ(Warning(file), "f: 4096 bytes behind the data that the header announces are not read");
 }
 
-// The fields' bytes one field after the other, as a run of bytes that are as they are.
+// The bytes of each field for all points, one field after the other, as literal runs.
 TEST(Pcd, IsReadCompressed) {
   const std::string x = Bytes<float>({1, -4}), y = Bytes<float>({2, 0.5f}), z = Bytes<float>({3, 6});
   const std::string data = Bytes<std::uint32_t>({25, 24}) + "\x17" + x + y + z;
@@ -403,7 +403,7 @@ TEST(CloudFile, IsChosenByItsEnding) {
     EXPECT_THROW(ReadCloud(folder.path() / name), InputError) << name;
 }
 
-// Ten thousand mutations of sound files: each is read, or refused in one sentence; the sanitizers watch.
+// Ten thousand mutations of valid files: each is read, or rejected in one sentence. The sanitizers watch.
 TEST(CloudFile, SurvivesMutations) {
   const std::string elements = "element vertex 2\n" + kXyz + "property list uchar short tags\n";
   const std::string binary_rows =

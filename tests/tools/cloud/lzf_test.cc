@@ -37,8 +37,8 @@ TEST(Lzf, ReachesAsFarAsTheFormat) {
   EXPECT_EQ(Decompress(data + "\xff\xff\xff", expected.size()), expected);
 }
 
-// An encoder that says everything by brute force: at each place the longest repetition of what is before it,
-// overlapping too, or bytes as they are.
+// A brute-force encoder: at each position it uses the longest match in the data before (which may overlap), or literal
+// bytes.
 std::string Compressed(const std::string& text, bool repeat) {
   std::string out, plain;
   const auto flush = [&] {

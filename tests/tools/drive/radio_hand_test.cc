@@ -14,7 +14,7 @@ ManualCommand Ahead(Time now) {
   return {.heard = now, .held = true, .speed_m_s = 0.7, .steering_rad = -0.1, .autonomy = true};
 }
 
-TEST(RadioHand, TellsTheCarWhatTheHandWantsInSevenths) {
+TEST(RadioHand, TransmitsTheCommandInSevenths) {
   for (const int baud : {9600, 19200, 57600, 115200}) {
     RadioHand hand({.baud = baud}, kLimits, 1);
     ManualCommand heard;
@@ -54,7 +54,7 @@ TEST(RadioHand, AgesWhenTheStationsStickHasGoneOrNothingIsHeard) {
   for (now = Time(0); now < 10 * kTick; now += kTick) EXPECT_LT(deaf.Send(Ahead(now), now).heard, Time(0));
 }
 
-TEST(RadioHand, NeverCarriesWhatIsNoNumber) {
+TEST(RadioHand, NeverTransmitsANumberThatIsNotFinite) {
   RadioHand hand({.baud = 57600}, kLimits, 1);
   ManualCommand heard;
   for (Time now{0}; now < 10 * kTick; now += kTick) {

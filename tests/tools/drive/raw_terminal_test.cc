@@ -13,7 +13,7 @@
 namespace merlin {
 namespace {
 
-// A terminal and the keyboard before it.
+// A terminal and its keyboard.
 struct Terminal {
   Terminal() {
     keyboard = posix_openpt(O_RDWR | O_NOCTTY);
@@ -88,7 +88,7 @@ TEST(RawTerminal, PutsTheTerminalBackBeforeASignalKills) {
   }
 }
 
-TEST(RawTerminal, RefusesWhatIsNoTerminal) {
+TEST(RawTerminal, RejectsAFileThatIsNotATerminal) {
   int pipe_ends[2];
   ASSERT_EQ(pipe(pipe_ends), 0);
   EXPECT_THROW(RawTerminal{pipe_ends[0]}, InputError);

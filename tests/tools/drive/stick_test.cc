@@ -76,7 +76,7 @@ TEST(Stick, LetsGoAndAgesWhenItHasGone) {
   EXPECT_EQ(wish.heard, kStickTime);
 }
 
-TEST(Stick, NeverWishesWhatIsNoNumber) {
+TEST(Stick, NeverCommandsANumberThatIsNotFinite) {
   for (int i = -100; i <= 100; ++i) {
     const ManualCommand wish = Stick(kStickLimits).Update(At(i / 100.0, -i / 100.0), true, kStickTime);
     EXPECT_LE(std::abs(wish.speed_m_s), kStickLimits.speed_m_s);

@@ -9,7 +9,7 @@
 namespace merlin {
 namespace {
 
-// The bounds are where the true share p and the observed one differ by 1.96 sigma of p itself.
+// The bounds are where the true share p and the observed one differ by 1.96 standard deviations for p.
 TEST(ShareInterval, HasItsBoundsWhereTheObservedShareIs1_96SigmasOff) {
   for (const int runs : {1, 5, 40})
     for (int passed = 0; passed <= runs; ++passed) {
