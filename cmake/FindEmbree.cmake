@@ -1,5 +1,5 @@
-# Embree 4 (Debian 13) or 3.13 (Debian 12), whichever is installed; the newer where both are. Gives the target
-# Embree::embree, which also tells the code which of the two it is: MERLIN_EMBREE (sim/rays/embree.h).
+# Embree 4 (Debian 13) or 3.13 (Debian 12), whichever is installed; the newer if both are. Defines the target
+# Embree::embree, which also sets MERLIN_EMBREE to the version for the code (sim/rays/embree.h).
 find_package(embree 4 QUIET CONFIG)
 if(NOT embree_FOUND)
   find_package(embree 3.13 QUIET CONFIG)

@@ -1,5 +1,5 @@
-# The modules of OpenCV 4 that are asked for, as targets opencv_<module>. OpenCV's own package file wants every module
-# installed: 200 system packages more (VTK, Qt, FFmpeg) than the few modules we use need.
+# The requested modules of OpenCV 4 as targets opencv_<module>. OpenCV's own package file requires all modules to be
+# installed: 200 more system packages (VTK, Qt, FFmpeg) than the few modules that we use.
 find_path(OpenCV_INCLUDE_DIR opencv2/core/version.hpp PATH_SUFFIXES opencv4)
 if(OpenCV_INCLUDE_DIR)
   file(STRINGS ${OpenCV_INCLUDE_DIR}/opencv2/core/version.hpp _opencv_version REGEX "CV_VERSION_(MAJOR|MINOR|REVISION) +[0-9]+")

@@ -1,4 +1,4 @@
-# One place for what every target shares: language, warnings, floating point.
+# Settings that all targets share: language, warnings, floating point.
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release)
 endif()
@@ -6,32 +6,32 @@ endif()
 add_library(merlin_options INTERFACE)
 target_compile_features(merlin_options INTERFACE cxx_std_20)
 target_include_directories(merlin_options INTERFACE ${PROJECT_SOURCE_DIR})
-# Contraction off: the same bits whether the compiler fuses a multiply and an add or not.
-# Nobody reads errno or floating-point traps after arithmetic; without them loops may be done several elements at a time,
-# with the same values.
+# No contraction: the bits must not depend on whether the compiler fuses multiply and add. Nobody reads errno or
+# floating-point traps after arithmetic; without them the compiler can vectorise loops, with the same values.
 target_compile_options(merlin_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off
   -fno-math-errno -fno-trapping-math)
-# The instruction set is pinned, not native: the same bits on every machine that has it. AVX2 halves the time of the
-# sensors' inner loops (SSE2, the default, takes half as many floats at once); every x86 CPU since 2015 has it.
+# The instruction set is fixed and not "native", so that all machines compute the same bits. AVX2 halves the time of the
+# sensors' inner loops compared with SSE2, the default; every x86 CPU since 2015 has it.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_options(merlin_options INTERFACE -march=x86-64-v3)
 endif()
-# GCC sees reads beyond Eigen's vectors of three that its own vectoriser would make, were they longer, and takes what is set in
-# one of several branches (or is an empty std::optional) for uninitialised. GCC 12 sees an overlap in "literal" + std::string
-# that is none (GCC bug 105651, mended in 13), and strings of a compile-time size overflow that do not (105329 and its kin).
+# False warnings of GCC: reads beyond Eigen's vectors of three, which its own vectoriser would make if they were longer,
+# and uninitialised values that are set in one of several branches (or are an empty std::optional). GCC 12 also sees an
+# overlap in "literal" + std::string (GCC bug 105651, fixed in 13) and overflows of strings of a constant size (105329
+# and similar).
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(merlin_options INTERFACE -Wno-array-bounds -Wno-maybe-uninitialized)
   if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(merlin_options INTERFACE -Wno-restrict -Wno-stringop-overflow)
   endif()
 endif()
-# Of a file that a unity build includes, GCC takes the unnamed namespace for one of a header.
+# In a unity build GCC takes the unnamed namespace of an included source file for that of a header.
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(merlin_options INTERFACE -Wno-subobject-linkage)
 endif()
-# Under MERLIN_SANITIZE every source is compiled with its sanitizer, and programs are linked with both. With "address" the
-# undefined-behaviour sanitizer comes in where a library is not NUMERIC: of Eigen's templates it makes half as much work
-# again for the compiler. "address,undefined" has both everywhere.
+# With MERLIN_SANITIZE every source is compiled with that sanitizer, and programs are linked with both sanitizers. With
+# "address", libraries that are not NUMERIC also get the undefined-behaviour sanitizer; for Eigen's templates it would
+# take the compiler half as long again. "address,undefined" has both everywhere.
 set(merlin_sanitized OFF)
 if(MERLIN_SANITIZE)
   set(merlin_sanitized ON)
@@ -43,8 +43,8 @@ if(MERLIN_SANITIZE)
 endif()
 add_library(merlin::options ALIAS merlin_options)
 
-# What most sources include, parsed once for all of them: Eigen takes a compiler 2 to 3 s. Files still name what they use.
-# Sets `result` to a target that carries the header as compiled with these options, made at the first call.
+# Precompiles the headers that most sources include, because Eigen takes a compiler 2 to 3 s. Files still include what
+# they use. Sets `result` to a target with the headers compiled with these options, made at the first call.
 function(merlin_headers result)
   string(MAKE_C_IDENTIFIER "merlin_headers${ARGN}" name)
   if(NOT TARGET ${name})
@@ -57,16 +57,16 @@ function(merlin_headers result)
   set(${result} ${name} PARENT_SCOPE)
 endfunction()
 
-# What runs once a run, or for a test, is optimised a little only: -O3 takes the compiler half as long again.
+# Code that runs once per run, or in tests, gets little optimisation: -O3 takes the compiler half as long again.
 set(merlin_cool)
 if(CMAKE_BUILD_TYPE STREQUAL Release)
   set(merlin_cool -O1)
 endif()
 
-# merlin_library(name [HOT] [NUMERIC] SOURCES ... PUBLIC libs... PRIVATE libs...): target merlin_<name>, alias merlin::<name>.
-# Without sources it is an interface library. HOT: has work for every frame or step. It is optimised as the build type has
-# it, and a little under the sanitizers too, where tests of it would otherwise take minutes. NUMERIC: mostly Eigen's
-# arithmetic, see MERLIN_SANITIZE.
+# merlin_library(name [HOT] [NUMERIC] SOURCES ... PUBLIC libs... PRIVATE libs...): target merlin_<name>, alias
+# merlin::<name>. Without sources it is an interface library. HOT: runs for every frame or step. It gets the
+# optimisation of the build type, and some under the sanitizers, where its tests would otherwise take minutes. NUMERIC:
+# mostly Eigen's arithmetic, see MERLIN_SANITIZE.
 function(merlin_library name)
   cmake_parse_arguments(arg "HOT;NUMERIC" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   if(NOT arg_SOURCES)

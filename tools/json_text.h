@@ -1,4 +1,4 @@
-// What --json prints: one document, whatever names and messages of other programs are in it.
+// Formats the output of --json: one valid document, whatever bytes are in names and messages.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 
 namespace merlin {
 
-// Indented, with its line end; bytes that are no UTF-8 become U+FFFD, numbers that are not finite null.
+// Indented text with a line end. Invalid UTF-8 becomes U+FFFD; numbers that are not finite become null.
 inline std::string JsonText(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

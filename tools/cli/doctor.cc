@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// What a run reads besides its own file.
+// Files that a run reads besides its scenario.
 struct Models {
   fs::path home;
   bool car = false, materials = false;
@@ -53,7 +53,7 @@ struct Report {
   Models models;
   unsigned cpu_cores = 0;
 
-  // The exit code of a run here. Without the twin no pictures are drawn.
+  // The exit code that a run would have here. Without the twin no pictures are drawn.
   int ExitCode() const {
     const bool draws = std::any_of(gl.begin(), gl.end(), [](const GlProbe& probe) { return probe.works; });
     return !models.Complete() ? 2 : draws || !MERLIN_TWIN ? 0 : 3;

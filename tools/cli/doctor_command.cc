@@ -26,16 +26,16 @@ struct RobotArguments {
   bool move = false, json = false;
 };
 
-// What the check of a car found.
+// The result of the check of a car.
 struct RobotReport {
   std::vector<DeviceReport> devices;
-  std::vector<std::string> preflight;  // faults; empty too where a device does not work, so that nothing was tried
+  std::vector<std::string> preflight;  // faults; empty as well if a device fails, since nothing was checked
 
   bool devices_work() const { return std::ranges::all_of(devices, &DeviceReport::works); }
   bool well() const { return devices_work() && preflight.empty(); }
 };
 
-// All devices together, as a run uses them.
+// All devices together, in the way a run uses them.
 std::vector<std::string> Preflight(const HardwareConfig& config, const Scenario& scenario, bool move) {
   RealClock clock(config.clock, Time::max());
   HardwareRobot hardware(config, CamerasOf(scenario), clock);
@@ -66,7 +66,7 @@ void PrintText(const RobotReport& report, bool move) {
     fmt::print("The car is fit to drive{}.\n", move ? "" : ", as far as can be told at rest (--move: and moving)");
 }
 
-// Of a run with these devices: it opens them in this order, and stops at the first that cannot be opened.
+// The exit code of a run with these devices. A run opens them in this order, and stops at the first that does not open.
 int ExitCodeOf(const RobotReport& report) {
   using enum DeviceReport::Fault;
   for (const DeviceReport& device : report.devices)
@@ -75,7 +75,7 @@ int ExitCodeOf(const RobotReport& report) {
   return report.well() ? kPass : kCannot;
 }
 
-// The devices of a real car: each by itself, then all of them together.
+// Tests the devices of a real car, first each by itself, then all together.
 int CheckRobot(const RobotArguments& arguments) {
   const std::string hardware = "hardware:", &robot = arguments.robot;
   if (!robot.starts_with(hardware) || robot.size() == hardware.size())

@@ -1,4 +1,4 @@
-// `merlin drive`: drives by hand. The car maps as it goes; what a run leaves, this leaves as well.
+// `merlin drive`: manual driving. The car maps as it goes, and the same files are written as by a run.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -32,7 +32,7 @@ namespace {
 
 struct DriveArguments {
   std::string scenario = "corridor_loop", out, robot = "twin", gl = "auto", joystick, seed;
-  std::string duration_s = "3600";  // the scenario's reader checks it
+  std::string duration_s = "3600";  // checked when the scenario is read
   double speed_m_s = HandLimits{}.speed_m_s;
   int threads = 0, radio_baud = 0;
   std::vector<std::string> sets;
@@ -43,7 +43,7 @@ constexpr char kKeysHelp[] =
     "w a s d or arrows drive, space stops, p autonomy, Shift overrides the obstacle stop, q quits\n";
 constexpr char kStickHelp[] = "stick drives, button 0 overrides the obstacle stop, button 1 autonomy, button 7 quits\n";
 
-// The operator's end: what his hand is on.
+// The operator's input device.
 class Station {
  public:
   Station(const DriveArguments& arguments, const HandLimits& limits) : keys_(limits), stick_(limits) {
@@ -71,7 +71,8 @@ class Station {
   std::optional<RawTerminal> terminal_;
 };
 
-// What the operator sees: five times a second on a terminal, once a second elsewhere, and at once when the driver changes.
+// The operator's display: updated five times a second on a terminal, once a second elsewhere, and at once when control
+// changes.
 class StatusLine {
  public:
   void Show(const LoopState& state) {
@@ -102,10 +103,10 @@ RunOptions OptionsOf(const DriveArguments& arguments, PlugMaker& make_plug) {
   std::vector<std::string> sets = arguments.sets;
   if (!arguments.seed.empty()) sets.push_back("seed=" + arguments.seed);
   sets.push_back("duration_s=" + arguments.duration_s);
-  sets.push_back("checks={}");  // they are the pilot's
+  sets.push_back("checks={}");  // the checks of the scenario are made for the pilot
   options.scenario = ReadScenario(arguments.scenario, sets);
   make_plug = PlugOf(arguments.robot, options);
-  if (options.robot == RobotKind::kTwin) options.pace = 1.0;  // the others keep the clock's
+  if (options.robot == RobotKind::kTwin) options.pace = 1.0;  // the other robots run in real time anyway
   options.out = arguments.out.empty() ? std::filesystem::path("runs") / (options.name + "-drive")
                                       : std::filesystem::path(arguments.out);
   options.gl = GlOf(arguments.gl);
@@ -114,7 +115,7 @@ RunOptions OptionsOf(const DriveArguments& arguments, PlugMaker& make_plug) {
   return options;
 }
 
-// What becomes of the operator's wishes on their way to the car.
+// The path of the operator's commands to the car.
 using Transmit = std::function<ManualCommand(const ManualCommand&, Time now)>;
 
 Transmit RadioOf(int baud, [[maybe_unused]] const HandLimits& limits, [[maybe_unused]] std::uint64_t seed) {
@@ -152,13 +153,13 @@ int Drive(const DriveArguments& arguments) {
   fmt::print("drove {:.2f} m in {:.1f} s{}\nfiles: {} (look at map.png)\n", result.metrics.distance_m.value_or(0.0),
              result.metrics.sim_time_s.value_or(0.0), collisions ? fmt::format(", {} collisions", *collisions) : "",
              options.out.string());
-  std::fflush(stdout);  // what was told so far comes before the error
+  std::fflush(stdout);  // print what was reported so far before the error
   if (report.error) std::rethrow_exception(report.error);
   return ExitCodeOf(result.verdict);
 }
 
 std::string TopSpeed(const std::string& text) {
-  double speed_m_s = 0.0;  // what is no number, CLI11 refuses
+  double speed_m_s = 0.0;  // CLI11 rejects text that is not a number
   const bool number = CLI::detail::lexical_cast(text, speed_m_s);
   return number && speed_m_s >= 0.05 && speed_m_s <= 2.0 ? "" : "expected 0.05 to 2 m/s, got '" + text + "'";
 }

@@ -33,8 +33,8 @@ std::string DrawOnce(sim::Gl gl) {
   return renderer.name();
 }
 
-// What the child does: '+' and the name, or '-' and the reason, into the pipe. It leaves without any clean-up: a broken
-// driver may crash in it.
+// Runs in the child: writes '+' and the name, or '-' and the reason, into the pipe. Exits without clean-up, in which a
+// broken driver might crash.
 [[noreturn]] void ProbeInChild(sim::Gl gl, int pipe) {
   alarm(20);
   const int nowhere = open("/dev/null", O_WRONLY);

@@ -1,4 +1,4 @@
-// What the subcommands that drive a robot take from their command lines alike.
+// Command-line options that all subcommands driving a robot share.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace merlin::cli {
 // auto, egl, osmesa or off.
 Gl GlOf(const std::string& name);
 
-// Of --robot: twin, emulated or hardware:FILE. Fills in the options that say which, and returns what makes its plug.
+// Parses --robot: twin, emulated or hardware:FILE. Sets the robot in the options and returns the maker of its plug.
 // Throws InputError for anything else, and for a robot that this program was built without.
 PlugMaker PlugOf(const std::string& robot, RunOptions& options);
 
-// 0 also where nothing was judged.
+// The exit code for a verdict; 0 also if nothing was judged.
 int ExitCodeOf(Verdict verdict);
 
 }  // namespace merlin::cli

@@ -1,4 +1,4 @@
-// `merlin run`: drives a scenario, judges it, says how it went.
+// `merlin run`: drives a scenario, judges it and reports the result.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -20,7 +20,7 @@ namespace {
 
 struct RunArguments {
   std::string scenario, out, robot = "twin", pace = "fast", gl = "auto";
-  std::string seed, duration_s;  // the scenario's reader checks them
+  std::string seed, duration_s;  // checked when the scenario is read
   int threads = 0;
   std::vector<std::string> sets;
   bool json = false;
@@ -40,7 +40,7 @@ double PaceOf(const std::string& text) {
   return pace;
 }
 
-// A few times a second on a terminal, every ten seconds of the run elsewhere.
+// Shows progress: a few times a second on a terminal, elsewhere every ten seconds of simulated time.
 class Progress {
  public:
   explicit Progress(double duration_s) : duration_s_(duration_s) {}
@@ -129,7 +129,7 @@ int Run(const RunArguments& arguments) {
   } else {
     PrintSummary(report, options.out);
   }
-  std::fflush(stdout);  // what was told so far comes before the error
+  std::fflush(stdout);  // print what was reported so far before the error
   if (report.error) std::rethrow_exception(report.error);
   return ExitCodeOf(report.result.verdict);
 }

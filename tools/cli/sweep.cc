@@ -1,4 +1,4 @@
-// `merlin sweep`: one scenario in many settings and on many seeds, and whether they keep their limits.
+// `merlin sweep`: runs a scenario with many settings and seeds, and tests whether the results keep their limits.
 #include <memory>
 #include <string>
 #include <vector>

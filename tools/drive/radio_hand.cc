@@ -5,7 +5,7 @@
 namespace merlin {
 namespace {
 
-constexpr Duration kValid = std::chrono::seconds(1);  // a byte says nothing of it; the arbiter does
+constexpr Duration kValid = std::chrono::seconds(1);  // not part of the byte; the arbiter limits the age
 
 }  // namespace
 

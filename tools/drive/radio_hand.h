@@ -1,5 +1,5 @@
-// The operator's hand at the other end of a radio: what it wants travels through the model of MERLIN's modems
-// (robot/emulated/radio.h), in sevenths of the limits, late and sometimes not at all.
+// Sends the operator's commands through the model of MERLIN's modems (robot/emulated/radio.h): in sevenths of the
+// limits, late, and sometimes not at all.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ class RadioHand {
   RadioHand(const RadioConfig& config, const HandLimits& limits, std::uint64_t seed)
       : radio_(config, seed), limits_(limits) {}
 
-  // at_station: the hand as it is now; a station whose stick has gone sends nothing. What the car last heard comes
-  // back, with the time it heard it. Who wants to quit does not need the radio for it.
+  // at_station: the operator's present command. A station whose joystick is disconnected sends nothing. Returns what
+  // the car heard last, with the time at which it heard it. A request to quit does not go through the radio.
   ManualCommand Send(const ManualCommand& at_station, Time now);
 
  private:
@@ -25,7 +25,7 @@ class RadioHand {
   HandLimits limits_;
   operator_link::Decoder decoder_;
   std::uint8_t sequence_ = 0;
-  ManualCommand heard_{.heard = Time(-std::chrono::hours(1))};  // nothing yet
+  ManualCommand heard_{.heard = Time(-std::chrono::hours(1))};  // nothing heard yet
 };
 
 }  // namespace merlin

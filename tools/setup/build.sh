@@ -2,7 +2,7 @@
 # Configures and builds one preset, quietly. Sourced by tools/merlin. Warnings stop the build in continuous integration (the
 # variable CI) and in the presets of developers, not at a user's.
 
-# A build folder that another place, another MuJoCo or other presets were configured for is configured afresh.
+# Configures a build folder again if it was configured in another place, or for another MuJoCo or other presets.
 configured() { # folder
   [ -e "$1/build.ninja" ] && grep -qxF "MUJOCO_ROOT:PATH=$mujoco_root" "$1/CMakeCache.txt" &&
     grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$top" "$1/CMakeCache.txt" && cmp -s "$top/CMakePresets.json" "$1/presets.json"
@@ -32,7 +32,7 @@ build() { # preset, targets...
   }
 }
 
-# On a terminal one line that counts, cut to its width, which may change meanwhile; else one line.
+# Shows progress: on a terminal one line that is overwritten and cut to the present width, elsewhere plain lines.
 show_progress() { # what
   local line
   [ -t 2 ] || say "$1"
@@ -42,7 +42,7 @@ show_progress() { # what
   [ ! -t 2 ] || printf '\r\033[K' >&2
 }
 
-# Of the terminal at stderr; COLUMNS, or 80, where it does not tell.
+# The width of the terminal at stderr; if it is not known, COLUMNS or 80.
 terminal_columns() {
   local size
   size=$(stty size <&2 2>/dev/null) || size=

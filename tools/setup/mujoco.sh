@@ -14,7 +14,7 @@ check_mujoco_root() {
   mujoco_root=$(readlink -f "$MUJOCO_ROOT")
 }
 
-# The wheel of PyPI and its SHA-256, by machine.
+# The wheel on PyPI and its SHA-256, for each kind of machine.
 mujoco_sha256() {
   case $1 in
     x86_64) echo 885bd9b9cc0a6b5ba1114923eb954027652a6a0c115fa46b3218b83bae72ac4f ;;
@@ -23,7 +23,8 @@ mujoco_sha256() {
   esac
 }
 
-# The stamp .complete is written last and the folder moved into place whole: an interrupted call leaves no half copy.
+# The stamp .complete is written last and the finished folder is moved into place, so that an interrupted call leaves no
+# half copy.
 fetch_mujoco() {
   [ -z "${MUJOCO_ROOT-}" ] || return 0
   local arch sha256 wheel log=$deps/pip.log

@@ -5,10 +5,11 @@
 oracles=$(readlink -m "${MERLIN_ORACLES:-$deps/oracles}")
 oracle_list=$tools/setup/oracles.txt
 
-# An environment is good for one list, one place (its programs name their interpreter by path) and one Python.
+# An environment is valid for one list of packages, one place (its programs contain the path of their interpreter) and
+# one Python.
 oracle_stamp() { echo "$(sha256sum <"$oracle_list") $oracles $(python3 -c 'import sys; print(sys.version)')"; }
 
-# The stamp .complete is written last: an environment without it, or with another, is made afresh.
+# The stamp .complete is written last. An environment without it, or with a different one, is made again.
 install_oracles() {
   local stamp log=$deps/oracles.log
   [ -z "${MERLIN_ORACLES-}" ] || { export MERLIN_ORACLES=$oracles && return 0; }

@@ -12,7 +12,7 @@ missing_packages() { # names...
   printf '%s\n' "$@" | grep -vxF -- "$installed" || true
 }
 
-# Debian and what calls itself like it; everybody else gets the list. MERLIN_OS_RELEASE: for the tests.
+# On Debian and its derivatives packages are installed; others are shown the list. MERLIN_OS_RELEASE is for the tests.
 require_debian() {
   local os
   # shellcheck source=/dev/null
@@ -34,7 +34,8 @@ install_packages() { # names...
     how="through sudo"
   fi
   say "installing system packages that the build or the program needs, with apt-get $how (log: $log): $missing"
-  # An index that cannot be renewed (one dead mirror) is no reason to stop; a package that cannot be had is.
+  # A package index that cannot be updated (a dead mirror, for example) is no reason to stop; a package that cannot be
+  # installed is.
   # shellcheck disable=SC2086
   {
     "${as_root[@]}" apt-get -qq -o DPkg::Lock::Timeout=300 update || true

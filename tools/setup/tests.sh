@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# `merlin test`: builds and runs the tests, of one name, the suite, or everything. Sourced by tools/merlin.
+# `merlin test`: builds and runs the tests: those of one name, the suite, or everything. Sourced by tools/merlin.
 
 parse_test_arguments() {
   test_name='' test_all=''
@@ -30,8 +30,8 @@ run_tests() {
   [ "$failed" = 0 ]
 }
 
-# Every test once (tests/CMakeLists.txt says which runs where): what drives, draws or computes much as users build it, all
-# else under the sanitizers.
+# Runs every test once (tests/CMakeLists.txt says where): tests that drive, draw or compute much in the release build,
+# all others under the sanitizers.
 test_suite() {
   timed "release build" build release
   unlock
@@ -50,7 +50,8 @@ timed() { # name, command...
   times+="$name $((SECONDS - start)) s, "
 }
 
-# Runs a test preset and adds its counts. A run that ends badly without a failed test (none found) counts as one failed.
+# Runs a test preset and adds its counts. If it fails without a failed test (none found, for example), that counts as
+# one failure.
 run_ctest() { # preset, more arguments of ctest...
   local preset=$1 report=$top/build/$1/tests.xml bad=0 counts
   shift

@@ -1,5 +1,6 @@
 # shellcheck shell=bash
-# `merlin test --all`: what is too long for every change. Sourced by tools/merlin; steps and counts as in tests.sh.
+# `merlin test --all`: the tests that take too long for every change. Sourced by tools/merlin; steps and counts as in
+# tests.sh.
 
 test_everything() {
   local clang
@@ -21,8 +22,8 @@ test_everything() {
   timed "sanitizer tests" run_ctest asan-all -L '^(unit|numeric)$'
 }
 
-# Older ones than 16 reject some ranges of GCC 12's library; of the others the oldest, because security updates
-# bring newer ones, whose new warnings would stop a build that nobody changed.
+# clang before 16 rejects some of the ranges in GCC 12's library. Of the others the oldest is used, because security
+# updates bring newer ones, whose new warnings would break an unchanged build.
 oldest_clang() {
   apt-cache search --names-only '^clang-[0-9]+$' | sed -n 's/^clang-\([0-9]*\) .*/\1/p' | awk '$1 >= 16' | sort -n | head -n 1
 }
@@ -39,7 +40,7 @@ build_with() { # compiler, as build
   build_alone "$@"
 }
 
-# One command is one test. A build that fails has stopped the script by then.
+# One command is one test. If a build fails, the script has already stopped.
 count() { # name, command...
   local name=$1
   shift
@@ -51,7 +52,7 @@ count() { # name, command...
   fi
 }
 
-# Every scenario whole on three seeds; corridor_loop must have its colour.
+# Every scenario completely, on three seeds; corridor_loop must have colour.
 run_scenarios() {
   local scenario seed name
   for scenario in "$top"/scenarios/*.yaml; do
@@ -71,7 +72,7 @@ run_scenario() { # name, seed
   [ "$1" != corridor_loop ] || grep -Eq '"color": "[0-9a-f]{64}"' "$out/result.json" || { say "$out: no colour"; return 1; }
 }
 
-# Each target for a minute, two at a time; and the bug planted in its decoder must be found.
+# Each target for a minute, two at a time. The bug planted in its decoder must be found as well.
 run_fuzzers() {
   local folder=$top/build/fuzz/tests/fuzz target
   build_with "clang++-$clang" fuzz fuzz_targets
@@ -95,7 +96,7 @@ finds_the_bug() { # program
   grep -qE 'ERROR: (libFuzzer|AddressSanitizer)|runtime error' "$1.log"
 }
 
-# The style is that of Debian 12's clang-format; others differ in details.
+# The style is that of clang-format in Debian 12; other versions differ in details.
 check_format() {
   if [[ $(clang-format --version) != *"version 14."* ]]; then
     say "skipped: the format is checked with Debian 12's clang-format (14); here: $(clang-format --version)"

@@ -22,10 +22,10 @@ namespace {
 constexpr char kScenario[] = "corridor_short", kLap[] = "corridor_loop";
 constexpr double kSpeed_m_s = 0.5;
 constexpr double kDrive_s = 16.0;
-constexpr double kHalfWidth_m = 1.05, kHeight_m = 2.5, kEnd_m = 6.5;  // of the corridor made of numbers
+constexpr double kHalfWidth_m = 1.05, kHeight_m = 2.5, kEnd_m = 6.5;  // of the synthetic corridor
 const Eigen::Vector3d kCamera_base(0.3, 0.0, 0.35);
 
-// What one row is made of.
+// The measurements from which a row is made.
 struct Times {
   std::vector<double> ms;
   std::vector<int> points;
@@ -48,7 +48,7 @@ Value Quantile(std::vector<Value> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-// At most: 0: whatever it takes.
+// A limit on the result; 0: none.
 struct Limits {
   double median_ms = 0.0, p99_ms = 0.0, max_ms = 0.0;
 };

@@ -37,7 +37,7 @@ std::string FailedChecks(const Json& checks) {
   return failed;
 }
 
-// By where its laps and its time went, a run that failed shows whether it stood.
+// Why a run failed. Distance and time at the end of a run show whether the car stood still.
 std::string Why(const Json& result, const SweepOutcome& outcome, const Scenario& scenario) {
   if (result.contains("fault")) return result.at("fault").get<std::string>();
   std::string why = FailedChecks(result.at("checks"));
@@ -71,7 +71,7 @@ std::optional<SweepOutcome> ReadOutcome(const std::filesystem::path& folder, con
   try {
     std::ifstream in(folder / "result.json");
     return OutcomeOf(Json::parse(in), scenario);
-  } catch (const nlohmann::json::exception&) {  // none, or one that is no longer whole
+  } catch (const nlohmann::json::exception&) {  // result.json is missing or incomplete
     return std::nullopt;
   }
 }

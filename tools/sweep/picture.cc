@@ -1,4 +1,4 @@
-// The table as a picture.
+// Draws the table as a picture.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace merlin {
 namespace {
 
 constexpr double kWidth_px = 1400, kRow_px = 26, kHeader_px = 96, kFooter_px = 70;
-constexpr double kLeft_px = 450, kRight_px = 1360;  // of the plot
+constexpr double kLeft_px = 450, kRight_px = 1360;  // left and right end of the plot
 constexpr double kLow_m = 0.005, kHigh_m = 5.0;
 const cv::Scalar kGrid(225, 225, 225), kGood(80, 140, 40), kBad(50, 50, 200), kDot(190, 140, 80), kLimit(60, 160, 230);
 

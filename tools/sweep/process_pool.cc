@@ -20,10 +20,10 @@ namespace {
 constexpr char kProgram[] = "/proc/self/exe";
 constexpr std::chrono::milliseconds kLook(20);
 
-// In the child: only calls that are safe after a fork.
+// Runs in the child, where only calls that are safe after a fork are allowed.
 [[noreturn]] void Become(char* const* argv, const char* log, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);  // it has gone before we asked to go with it
+  if (getppid() != parent) _exit(127);  // the parent ended before prctl took effect
   setpgid(0, 0);
   const int in = open("/dev/null", O_RDONLY);
   const int out = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
@@ -43,7 +43,7 @@ pid_t Start(const Command& command) {
   return child;
 }
 
-// The children at work. None outlives it.
+// The running children. None of them outlives this object.
 class Children {
  public:
   ~Children() {
@@ -59,7 +59,7 @@ class Children {
   void Signal(int number) const {
     for (const auto& [child, index] : at_work_) kill(child, number);
   }
-  // Of those that have ended.
+  // Reports the children that have ended.
   void Collect(const std::function<void(std::size_t, int)>& done) {
     for (auto child = at_work_.begin(); child != at_work_.end();) {
       int status = 0;
@@ -74,7 +74,7 @@ class Children {
   }
 
  private:
-  std::map<pid_t, std::size_t> at_work_;  // and their commands
+  std::map<pid_t, std::size_t> at_work_;  // and the indices of their commands
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Runs child processes of this very program, several at a time.
+// Runs child processes of this program, several at a time.
 #pragma once
 
 #include <atomic>
@@ -11,14 +11,15 @@
 namespace merlin {
 
 struct Command {
-  std::vector<std::string> arguments;  // after the program's name
-  std::filesystem::path log;           // takes all that it says
+  std::vector<std::string> arguments;  // without the program's name
+  std::filesystem::path log;           // gets all of its output
 };
 
-// Each command once, in order, so many at a time; done(command, exit code) as each ends (128 and the signal's number where
-// one ended it). Once stop is set none begins, those at work are interrupted as by Ctrl-C, and all have ended at the
-// return. Children die with this process, whatever ends it; a Ctrl-C on the terminal reaches them through it alone.
-// Throws MachineError where no process can be made, once the others have ended.
+// Runs each command once, in order, at most at_a_time at once. Calls done(command, exit code) when one ends; the code
+// is 128 plus the signal's number if a signal ended it. Once stop is set no further command starts, running ones are
+// interrupted as by Ctrl-C, and all have ended when this returns. Children die with this process, however it ends; a
+// Ctrl-C on the terminal reaches them only through this process. Throws MachineError if no process can be started,
+// after the others have ended.
 void RunCommands(std::span<const Command> commands, int at_a_time, const std::atomic<bool>& stop,
                  const std::function<void(std::size_t, int)>& done);
 

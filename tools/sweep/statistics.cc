@@ -8,7 +8,7 @@ namespace merlin {
 namespace {
 
 constexpr double kConfidence = 0.95;
-constexpr double kSigmas = 1.959963984540054;  // of 95 %
+constexpr double kSigmas = 1.959963984540054;  // for 95 %
 
 }  // namespace
 
@@ -24,7 +24,7 @@ std::optional<Spread> SpreadOf(std::span<const double> values) {
   std::vector<double> sorted(values.begin(), values.end());
   std::ranges::sort(sorted);
   const std::size_t n = sorted.size();
-  // Below and including the k-th value of either end lies the median with chance P(X < k), X binomial(n, 1/2).
+  // The median lies at or below the k-th value from either end with probability P(X < k), X binomial(n, 1/2).
   double chance = std::pow(0.5, static_cast<double>(n)), tail = chance;
   std::size_t k = 1;
   double confidence = std::max(0.0, 1.0 - 2.0 * tail);

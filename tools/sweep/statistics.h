@@ -1,4 +1,4 @@
-// What a handful of runs tells of all the runs there could be.
+// Estimates from a few runs: what they say about all possible runs, with confidence intervals.
 #pragma once
 
 #include <optional>
@@ -8,23 +8,23 @@ namespace merlin {
 
 struct Interval {
   double low = 0.0, high = 0.0;
-  double confidence = 0.0;  // that the true value lies within
+  double confidence = 0.0;  // probability that the true value lies within
 };
 
-// Of a share, from how many of how many (at least one): the score interval at 95 %.
-// E. B. Wilson, "Probable inference, the law of succession, and statistical inference", JASA 22, 1927.
+// Score interval (95 %) of a share, given `passed` of `runs` (at least one). Source: E. B. Wilson,
+// "Probable inference, the law of succession, and statistical inference", JASA 22, 1927.
 Interval ShareInterval(int passed, int runs);
 
 struct Spread {
-  double median = 0.0, worst = 0.0;  // the largest
+  double median = 0.0, worst = 0.0;  // worst: the largest
   Interval of_median;
   int count = 0;
 };
 
-// Nothing without values. The interval lies between two of the values, whatever their distribution: each is below the true
-// median with chance 1/2. It is the narrowest with 95 %, or as wide as the values where they are too few for that (five:
-// 93.75 %).
-// H. A. David and H. N. Nagaraja, "Order Statistics", 3rd edition, 2003, section 7.1.
+// None without values. The interval of the median lies between two of the values and holds for any distribution,
+// because each value is below the true median with probability 1/2. It is the narrowest with at least 95 %, or the full
+// range of the values if there are too few (five: 93.75 %). Source: H. A. David and H. N. Nagaraja, "Order Statistics",
+// 3rd edition, 2003, section 7.1.
 std::optional<Spread> SpreadOf(std::span<const double> values);
 
 }  // namespace merlin

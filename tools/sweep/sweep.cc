@@ -22,9 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kMarker[] = ".merlin-sweep";
-constexpr char kKey[] = "sweep_key.txt";  // in a run's folder: of what it is the result
+constexpr char kKey[] = "sweep_key.txt";  // in a run's folder: identifies program, models, scenario and seed
 
-// The folder of a sweep, held against other sweeps.
+// The folder of a sweep, locked against other sweeps.
 class SweepFolder {
  public:
   explicit SweepFolder(const fs::path& path) {
@@ -51,7 +51,7 @@ class SweepFolder {
   int marker_ = -1;
 };
 
-// What all runs have in common: the program and the models.
+// The part of the key that all runs share: the program and the models.
 std::string HashOfProgram() {
   Sha256 hash;
   hash.Add(ReadFile("/proc/self/exe", "this program"));
@@ -66,7 +66,8 @@ std::string HashOfProgram() {
   return hash.Hex();
 }
 
-// Runs of one key give one result, bit by bit. Files that the scenario names by path count with what they hold.
+// Runs with the same key give the same result, bit by bit. Files that the scenario names by path enter by their
+// content.
 std::string KeyOf(const SweepRun& run, const std::string& program) {
   const Scenario& scenario = run.scenario;
   Sha256 hash;
@@ -136,7 +137,7 @@ class Session {
     return command;
   }
 
-  // A run that has ended: its exit code says whether there is a result.
+  // Handles a run that has ended. Its exit code says whether there is a result.
   void End(std::size_t i, int code) {
     std::optional<SweepOutcome> outcome;
     if (code == 0 || code == 1) outcome = ReadOutcome(FolderOf(i), sweep_.runs[i].scenario);
@@ -164,7 +165,7 @@ class Session {
   const SweepOptions& options_;
   const std::function<void(const SweepProgress&)>& progress_;
   SweepFolder folder_;
-  std::vector<SweepOutcome> outcomes_;  // of the sweep's runs
+  std::vector<SweepOutcome> outcomes_;  // of all runs of the sweep
   std::vector<std::string> keys_;
   std::vector<std::size_t> to_run_;
   SweepProgress now_;

@@ -1,5 +1,5 @@
-// Runs a sweep: every run is a child process of this program, in a folder of its own below the sweep's. A run that is there
-// already, of the same program, models, scenario and seed, is taken over.
+// Runs a sweep. Every run is a child process of this program with its own folder inside the sweep's folder. A run that
+// exists already, of the same program, models, scenario and seed, is reused.
 #pragma once
 
 #include <atomic>
@@ -14,9 +14,9 @@
 namespace merlin {
 
 struct SweepOptions {
-  std::string name;           // for people
-  std::filesystem::path out;  // new, empty, or left by a sweep
-  int jobs = 0;               // runs at a time; 0: as many as there are cores
+  std::string name;           // for display
+  std::filesystem::path out;  // new, empty, or of an earlier sweep
+  int jobs = 0;               // runs at a time; 0: the number of cores
 };
 
 struct SweepProgress {
@@ -25,14 +25,14 @@ struct SweepProgress {
 };
 
 struct SweepReport {
-  SweepTable table;  // of all runs; empty where it was interrupted
+  SweepTable table;  // of all runs; empty if interrupted
   std::size_t taken_over = 0;
   bool interrupted = false;
-  int worst_exit = 0;  // of a run that left no result: 2, 3 or 4; 0: each left one
+  int worst_exit = 0;  // largest exit code (2, 3 or 4) of a run without a result; 0: all runs have one
 };
 
-// Leaves table.md, table.csv, runs.csv and table.png in the folder, and of every run its folder and its log. Throws
-// InputError for a folder that is somebody else's or in use by another sweep.
+// Writes table.md, table.csv, runs.csv and table.png into the folder, and a folder and a log for every run. Throws
+// InputError if the folder holds other files or is in use by another sweep.
 SweepReport RunSweep(const Sweep& sweep, const SweepOptions& options, const std::atomic<bool>& stop,
                      const std::function<void(const SweepProgress&)>& progress);
 

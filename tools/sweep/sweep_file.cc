@@ -16,10 +16,10 @@
 namespace merlin {
 namespace {
 
-constexpr double kTimes = 1.5;             // the time for a lap over that at its full speed
-constexpr std::size_t kSeedsMax = 10'000;  // of a row
+constexpr double kTimes = 1.5;             // time allowed for a lap over the time at full speed
+constexpr std::size_t kSeedsMax = 10'000;  // most seeds in a row
 
-// The value as `--set` takes it: on one line.
+// The value in the form that `--set` takes: on one line.
 std::string OnOneLine(const YAML::Node& value) {
   YAML::Emitter out;
   out.SetMapFormat(YAML::Flow);
@@ -30,7 +30,7 @@ std::string OnOneLine(const YAML::Node& value) {
 
 }  // namespace
 
-// A map of settings, each key a dotted path. Found by the reader beside its type.
+// A map of settings whose keys are dotted paths. YamlReader finds this function by its argument types.
 static void ReadYaml(YamlReader& reader, const YAML::Node& node, const std::string& field,
                      std::vector<Assignment>& set) {
   for (const YamlEntry& entry : reader.file().Entries(node, field))
@@ -65,7 +65,7 @@ static void Visit(Visitor& v, Sweep& c) {
 
 namespace {
 
-// Fills in what a row leaves to the sweep.
+// Copies settings of the sweep to a row that does not have its own.
 void Inherit(const Sweep& sweep, SweepRow& row) {
   if (row.scenario.empty()) row.scenario = sweep.scenario;
   if (row.seeds.empty()) row.seeds = sweep.seeds;
@@ -81,7 +81,7 @@ void Inherit(const Sweep& sweep, SweepRow& row) {
   take(row.limits.walls_worst_m_max, sweep.limits.walls_worst_m_max);
 }
 
-// Everything that a run would refuse before it starts.
+// All faults that would make a run refuse to start.
 Scenario Resolve(const std::string& name, const std::vector<std::string>& sets) {
   Scenario scenario = ReadScenario(name, sets);
   const TwinOptions twin = TwinOptionsOf(scenario, {});
@@ -100,7 +100,7 @@ std::string WithoutOptionsName(std::string line) {
   return line.starts_with(option) ? line.substr(option.size()) : line;
 }
 
-// Faults of many rows that share settings, each once.
+// Faults, each reported once although many rows share their settings.
 class Faults {
  public:
   explicit Faults(YamlFile& yaml) : yaml_(yaml) {}
@@ -115,7 +115,7 @@ class Faults {
     }
   }
 
-  // The settings that are wrong on their own are named; where none is, the row as a whole.
+  // Reports the settings that are wrong on their own; if there are none, the row as a whole.
   void AddOf(const SweepRow& row, const InputError& whole) {
     bool found = false;
     for (const Assignment& assignment : row.set) {
@@ -155,7 +155,7 @@ void CheckNames(const Sweep& sweep, Faults& faults) {
                                 NearestName(row.compared_with, names) + "'?");
 }
 
-// The row's scenario, and how long it takes for a lap.
+// Sets the row's scenario and, if lap_m is given, its duration.
 void AddRuns(const Sweep& sweep, std::size_t index, const std::string& seeds, std::vector<SweepRun>& runs) {
   const SweepRow& row = sweep.rows[index];
   SweepRun run{.row = index, .scenario = {}, .sets = Texts(row.set)};
@@ -179,7 +179,7 @@ void CheckChoice(const Sweep& sweep, const SweepChoice& choice) {
       throw InputError("--row", "no row is called '" + row + "'; did you mean '" + NearestName(row, names) + "'?");
 }
 
-// A scenario beside the sweep's file goes before one in the present folder.
+// A scenario beside the sweep file takes precedence over one in the current folder.
 void Anchor(std::string& scenario, const std::filesystem::path& folder) {
   std::error_code ignored;
   const bool is_path = scenario.ends_with(".yaml") || scenario.find('/') != std::string::npos;
@@ -219,7 +219,7 @@ Sweep ReadSweep(const std::string& name, const SweepChoice& choice) {
   YamlFile yaml(file, "a sweep: scenario, seeds, set, rows, ...");
   Sweep sweep;
   yaml.ReadInto(sweep);
-  yaml.ThrowFaults();  // what is no sweep has no rows to look at
+  yaml.ThrowFaults();  // without a valid sweep there are no rows to check
   if (sweep.rows.empty()) yaml.Fault("rows", "expected at least one row");
   Faults faults(yaml);
   CheckNames(sweep, faults);

@@ -24,13 +24,13 @@
 
 namespace merlin {
 
-// Path errors, sizes and walls are those of completed runs: not ended before their time, with all laps that the task asks
-// for.
+// Path errors, sizes and walls count only in completed runs: those that did not end early and drove all laps of the
+// task.
 struct SweepLimits {
-  std::optional<double> pass_share_min{};    // [0, 1] of the runs that pass the checks of their scenario
+  std::optional<double> pass_share_min{};    // share of runs that pass the checks of their scenario, [0, 1]
   std::optional<double> ate_median_m_max{};  // ate_rmse_m
   std::optional<double> ate_worst_m_max{};
-  std::optional<double> ate_median_ratio_max{};    // over that of the row compared_with
+  std::optional<double> ate_median_ratio_max{};    // relative to that of the row compared_with
   std::optional<double> size_worst_percent_max{};  // the worse of the two of map_size_error_percent
   std::optional<double> walls_worst_m_max{};       // map_to_plan_p95_m
 };
@@ -45,17 +45,17 @@ void Visit(Visitor& v, SweepLimits& c) {
   v("walls_worst_m_max", c.walls_worst_m_max, {0.0, 1e6});
 }
 
-// "a.b=c", and where the file says so.
+// A setting "a.b=c", and its place in the file.
 struct Assignment {
   std::string text, where;
 };
 
 struct SweepRow {
-  std::string name;               // letters, digits and _ . + -: folders are called so
+  std::string name;               // letters, digits and _ . + -; also the name of its folder
   std::string scenario;           // default: the sweep's
   std::string seeds;              // default: the sweep's
-  std::vector<Assignment> set{};  // the sweep's first, then its own
-  SweepLimits limits;             // with the sweep's, where the row has none
+  std::vector<Assignment> set{};  // those of the sweep, then its own
+  SweepLimits limits;             // its own, and those of the sweep for which it has none
   std::string compared_with;
   std::string where;  // FILE:LINE
 };
@@ -65,7 +65,7 @@ struct SweepRun {
   std::size_t row = 0;
   std::uint64_t seed = 1;
   Scenario scenario;
-  std::vector<std::string> sets{};  // that make it of the row's scenario
+  std::vector<std::string> sets{};  // all settings that are applied to the row's scenario
 };
 
 struct Sweep {
@@ -75,20 +75,21 @@ struct Sweep {
   std::vector<Assignment> set{};
   SweepLimits limits, all;
   std::vector<SweepRow> rows{};
-  std::vector<SweepRun> runs{};  // row by row; not in the file
+  std::vector<SweepRun> runs{};  // row by row; not a key of the file
 };
 
-// What is taken of a sweep.
+// The part of a sweep to run.
 struct SweepChoice {
   std::string seeds{};              // instead of the file's; empty: the file's
   std::vector<std::string> rows{};  // names; empty: all
 };
 
-// name: of a file in scenarios/sweeps/ without its ending, or a path. Throws InputError with every fault of the file, a
-// line each: unknown keys, and settings that no scenario, camera or room of that name has or that they do not allow.
+// name: a file in scenarios/sweeps/ without its extension, or a path. Throws InputError with every fault of the file,
+// one per line: unknown keys, and settings that do not exist in the scenario, camera or room, or that they do not
+// allow.
 Sweep ReadSweep(const std::string& name, const SweepChoice& choice);
 
-// "1-5" or "1,4,7-9" as numbers, in that order. Throws InputError, which names where.
+// The numbers in "1-5" or "1,4,7-9", in that order. Throws InputError that begins with where.
 std::vector<std::uint64_t> SeedsOf(const std::string& text, const std::string& where);
 
 }  // namespace merlin

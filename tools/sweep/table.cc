@@ -25,7 +25,7 @@ void Judge(SweepFigures& figures, const SweepLimits& limits, const SweepFigures*
   judge("ate_worst_m_max", limits.ate_worst_m_max, worst(figures.ate_m), true);
   judge("size_worst_percent_max", limits.size_worst_percent_max, worst(figures.size_percent), true);
   judge("walls_worst_m_max", limits.walls_worst_m_max, worst(figures.walls_m), true);
-  if (compared == nullptr) return;  // the other row was not run: there is nothing to compare with
+  if (compared == nullptr) return;  // the other row was not run, so there is nothing to compare with
   std::optional<double> ratio;
   if (figures.ate_m && compared->ate_m && compared->ate_m->median > 0.0)
     ratio = figures.ate_m->median / compared->ate_m->median;
@@ -84,7 +84,7 @@ std::string MarkdownRow(const SweepFigures& row) {
                                         : "MISSED: " + missed);
 }
 
-// A field that may hold commas and quotes (RFC 4180).
+// A field in which commas and quotes are allowed (RFC 4180).
 std::string Field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted;

@@ -1,4 +1,4 @@
-// A sweep's table: a row for each setting, with what its runs tell of it and the limits that they keep or miss.
+// The table of a sweep: one row for each setting, with statistics of its runs and the limits that they keep or miss.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,8 @@
 namespace merlin {
 
 struct LimitOutcome {
-  std::string name;               // of SweepLimits
-  std::optional<double> value{};  // none: not known, which misses
+  std::string name;               // a limit of SweepLimits
+  std::optional<double> value{};  // none if not known, which misses the limit
   double limit = 0.0;
   bool kept = false;
 };
@@ -29,7 +29,7 @@ struct SweepFigures {
 
 struct SweepTable {
   std::string name;
-  std::vector<SweepFigures> rows{};     // those that were run; then "all" of them together
+  std::vector<SweepFigures> rows{};     // the rows that were run, then "all" for all runs together
   std::vector<std::string> failures{};  // "S3 seed 2: why", of runs that did not pass
 
   bool MissesALimit() const;
