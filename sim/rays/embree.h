@@ -1,5 +1,5 @@
-// Embree's header by one name, of the version that CMake chose: 3 (Debian 12) or 4 (Debian 13). The two differ in how a
-// query is described; ray_scene.cc holds what follows from that.
+// Embree's header of the version that CMake found: 3 (Debian 12) or 4 (Debian 13). The two describe a query
+// differently; ray_scene.cc handles this.
 #pragma once
 
 #if MERLIN_EMBREE == 4

@@ -6,7 +6,7 @@
 namespace merlin::sim {
 namespace {
 
-constexpr float kBoundsMargin_m = 1e-4f;  // a curved geom's box must hold it in float, too
+constexpr float kBoundsMargin_m = 1e-4f;  // so that a curved geom's box holds it in float as well
 
 void CurvedBounds(const RTCBoundsFunctionArguments* args) {
   const CurvedGeom& curved = static_cast<const RayGroup*>(args->geometryUserPtr)->curved[args->primID];

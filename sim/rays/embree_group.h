@@ -1,4 +1,4 @@
-// A RayGroup as Embree takes it: triangles as they are, curved geoms as user geometries that MuJoCo intersects.
+// A RayGroup in Embree: triangles as triangle geometries, curved geoms as user geometries intersected by MuJoCo.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 namespace merlin::sim {
 constexpr unsigned kOpaqueMask = 1, kPaneMask = 2;
 
-// Embree's numbers of the g-th group's geometries, in whichever scene they are: 2 g for triangles, 2 g + 1 for curved ones.
+// Embree's ids of the geometries of group g in any scene: 2 g for triangles, 2 g + 1 for curved geoms.
 constexpr unsigned TrianglesId(unsigned group) { return 2 * group; }
 constexpr unsigned CurvedId(unsigned group) { return 2 * group + 1; }
 constexpr bool IsCurved(unsigned id) { return id % 2 == 1; }
@@ -28,7 +28,7 @@ using EmbreeGeometry = std::unique_ptr<RTCGeometryTy, EmbreeRelease>;
 
 EmbreeScene NewScene(RTCDevice device, RTCSceneFlags flags);
 
-// Adds the group's geometries to the scene by their numbers, in the group's frame. Embree keeps the group's address.
+// Adds the group's geometries, with these ids and in the group's frame, to the scene. Embree keeps the group's address.
 void Attach(RTCDevice device, RTCScene scene, const RayGroup& group, unsigned number);
 
 }  // namespace merlin::sim

@@ -14,11 +14,11 @@
 namespace merlin::sim {
 namespace {
 
-constexpr mjtNum kInfinitePlane_m = 1000.0;  // half edge of a plane that MJCF calls infinite (size 0)
+constexpr mjtNum kInfinitePlane_m = 1000.0;  // half edge of a plane of infinite size (0 in MJCF)
 
 bool IsStatic(const mjModel* model, int body) { return model->body_weldid[body] == 0; }
 
-// As mj_ray has it: where there is a material, its alpha counts and not the geom's.
+// As in mj_ray: if a geom has a material, the material's alpha counts and not the geom's.
 bool IsVisible(const mjModel* model, int geom) {
   const int material = model->geom_matid[geom];
   const float alpha = material < 0 ? model->geom_rgba[4 * geom + 3] : model->mat_rgba[4 * material + 3];
@@ -49,7 +49,7 @@ void AddPlane(RayGroup& group, int geom, const mjtNum* size, const Pose& T_group
 
 void AddBox(RayGroup& group, int geom, const mjtNum* size, const Pose& T_group_geom) {
   const unsigned first = static_cast<unsigned>(group.vertices.size());
-  for (unsigned corner = 0; corner < 8; ++corner) {  // bit i of the corner: the positive side of axis i
+  for (unsigned corner = 0; corner < 8; ++corner) {  // bit i of the corner selects the positive side of axis i
     const Eigen::Vector3d sign((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? 1 : -1);
     group.vertices.push_back((T_group_geom * sign.cwiseProduct(Eigen::Vector3d(size))).cast<float>());
   }
@@ -68,7 +68,7 @@ void AddMesh(RayGroup& group, const mjModel* model, int geom, const Pose& T_grou
     const Eigen::Map<const Eigen::Vector3f> vertex(model->mesh_vert + 3 * (model->mesh_vertadr[mesh] + i));
     group.vertices.push_back((T_group_geom * vertex.cast<double>()).cast<float>());
   }
-  // Of one face: normals within 1e-5, offsets within 0.1 mm (two that a rounding parts only cost time).
+  // One face holds normals within 1e-5 and offsets within 0.1 mm. Faces split by rounding only cost time.
   std::map<std::array<long, 4>, int> known;
   for (int i = 0; i < model->mesh_facenum[mesh]; ++i) {
     const int* corners = model->mesh_face + 3 * (model->mesh_faceadr[mesh] + i);

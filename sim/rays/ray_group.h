@@ -1,4 +1,4 @@
-// The visible geoms of a MuJoCo model, as the ray caster needs them: grouped by what moves together.
+// The visible geoms of a MuJoCo model, grouped by what moves together, for the ray caster.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -12,7 +12,7 @@
 
 namespace merlin::sim {
 
-// A sphere, capsule, cylinder or ellipsoid: MuJoCo itself intersects it.
+// A sphere, capsule, cylinder or ellipsoid, which MuJoCo itself intersects.
 struct CurvedGeom {
   int geom;
   int type;
@@ -21,7 +21,7 @@ struct CurvedGeom {
   mjtNum size[3];
 };
 
-// Half edges [m], in the geom's frame, of the smallest box around it.
+// Half dimensions [m], in the geom's frame, of its bounding box.
 Eigen::Vector3d HalfEdges(const CurvedGeom& curved);
 
 // A plane that triangles of one geom share; in the group's frame.
@@ -31,12 +31,12 @@ struct RayFace {
   double offset_m = 0.0;            // normal . p of its points
 };
 
-// Geoms that move together. Flat ones are triangles in float; the frame is the body's (statics: the world's; a plane:
-// its own, so that its far corners cost no precision).
+// Geoms that move together. Flat geoms are triangles in float. The frame is that of the body; for static geoms that of
+// the world; for a plane its own, so that its far corners lose no precision.
 struct RayGroup {
   int body = 0;
   Pose T_body_group = Pose::Identity();
-  bool one_sided = false;  // a plane: MuJoCo's are seen from above only
+  bool one_sided = false;  // a plane: visible only from above, as in MuJoCo
   bool fixed = false;      // never moves, and its frame is the world's
   bool panes = false;      // geoms that can be looked through
 
@@ -46,7 +46,7 @@ struct RayGroup {
   std::vector<int> face_of_triangle;  // index into faces
   std::vector<CurvedGeom> curved;
 
-  // In the group's frame, about the middle of the smallest upright box around all its geoms.
+  // Sphere in the group's frame, centred in the axis-aligned bounding box of all its geoms.
   struct Sphere {
     Eigen::Vector3d middle{0, 0, 0};
     double radius_m = 0.0;
@@ -56,13 +56,13 @@ struct RayGroup {
 
 Pose ToPose(const mjtNum* position, const mjtNum* quaternion_wxyz);
 
-// T_world_body of every body before anything has moved.
+// T_world_body of every body in the model's reference pose.
 std::vector<Pose> ReferencePoses(const mjModel* model);
 
-// One group of all statics, one for each body that moves, the same again for panes, one for each plane (in the world's
-// frame if it is fixed and level: then its far corners cost no precision there either); without the
-// geoms of bodies for which skip_body is true. is_pane: by geom, empty for none. Throws InputError for a geom of a type
-// that is neither flat nor curved (height field, SDF).
+// Makes one group of all static geoms, one for each body that moves, the same again for panes, and one for each plane
+// (in the world frame if it is fixed and level, because its far corners then lose no precision there either). Geoms of
+// bodies for which skip_body is true are left out. is_pane: indexed by geom id; empty: no panes. Throws InputError for
+// a geom that is neither flat nor curved (height field, SDF).
 std::deque<RayGroup> GroupGeoms(const mjModel* model, const std::vector<bool>& skip_body,
                                 const std::vector<bool>& is_pane);
 

@@ -12,11 +12,11 @@
 namespace merlin::sim {
 namespace {
 
-// One thread: the scene is small, and its bits must not depend on who builds it. A fixed widest instruction set: the
-// same bits on every machine that has it.
+// One thread, because the scene is small and its bits must not depend on how it is built. The instruction set is fixed,
+// so that all machines that have it get the same bits.
 constexpr char kDeviceConfig[] = "threads=1,set_affinity=0,max_isa=avx2";
 
-// A group that moves or has a frame of its own: it has a scene of its own, and a pose.
+// A group that moves or has its own frame gets a scene of its own, and a pose.
 struct Instance {
   const RayGroup* group;
   EmbreeScene scene;
@@ -35,7 +35,7 @@ struct Instance {
     rtcSetGeometryMask(geometry.get(), MaskOf(of));
   }
 
-  // False: it was there already.
+  // False if it was there already.
   bool Place(const Pose& T_world_group) {
     const Eigen::Matrix4f matrix = T_world_group.matrix().cast<float>();
     if (placed && matrix == T_world_group_last) return false;
@@ -52,7 +52,7 @@ constexpr int kPacket = 8;
 constexpr float kBoundMargin_m = 1e-2f;
 constexpr std::size_t kBoundsMax = 8;  // with more instances, Embree's own hierarchy is faster
 
-// Eight rays as Embree takes them; lanes beyond count repeat the first and are not valid.
+// Eight rays in Embree's form. Lanes beyond count repeat the first ray and are not valid.
 template <class Packet>
 void Fill(Packet& ray, std::span<const Ray> rays, Panes panes) {
   for (std::size_t i = 0; i < kPacket; ++i) {
@@ -71,12 +71,13 @@ void Fill(Packet& ray, std::span<const Ray> rays, Panes panes) {
   }
 }
 
-// A sphere around an instance, world frame. Most packets of rays pass all of them by, and to ask Embree costs more.
+// A bounding sphere of an instance, world frame. Most packets of rays miss all spheres, which is cheaper to test here
+// than in Embree.
 struct Bound {
   Eigen::Vector3f middle{0, 0, 0};
   float radius_m = 0.0f;
 
-  // Whether one of eight rays may meet it before its end; true where rounding leaves a doubt.
+  // Whether one of eight rays may hit it within its range; true if rounding leaves a doubt.
   template <class Packet>
   bool MayMeet(const Packet& ray) const {
     const float cx = middle.x(), cy = middle.y(), cz = middle.z(), reach_m = radius_m + kBoundMargin_m;
@@ -99,8 +100,8 @@ struct Lanes {
   alignas(32) int valid[kPacket];
 };
 
-// Nearest hits of rays from one place in neighbouring directions, which go down the hierarchy together (coherent); and
-// whether rays to lights meet anything, each on its own (incoherent). Embree 4 takes as arguments what 3 calls a context.
+// Queries: the nearest hits of rays from one origin in similar directions (coherent), and whether anything blocks rays
+// to lights (incoherent). Embree 4 takes as arguments what Embree 3 calls a context.
 #if MERLIN_EMBREE == 4
 void Intersect(const Lanes& lanes, RTCScene scene, RTCRayHit8& packet) {
   RTCRayQueryContext context;
@@ -142,19 +143,19 @@ void Occlude(const Lanes& lanes, RTCScene scene, RTCRay8& packet) {
 
 }  // namespace
 
-// What is fixed is one scene of best quality, all of triangles of one kind; what moves is another, of instances: most
-// rooms have nothing in it, and their rays then meet one hierarchy only.
+// Fixed geoms are in one scene of high quality with only triangles. Moving ones are in a second scene of instances,
+// which is empty in most rooms, so that rays there traverse only one hierarchy.
 struct RayScene::Impl {
   std::deque<RayGroup> groups;  // Embree keeps their addresses
   EmbreeDevice device{rtcNewDevice(kDeviceConfig)};
-  std::map<unsigned, Instance> instances;  // by the group's number
+  std::map<unsigned, Instance> instances;  // by id of the group
   std::vector<int> first_face;             // of a group
   std::vector<RayGroup::Sphere> spheres;   // the same
   std::vector<int> body_of_geom;
   std::vector<Face> faces;
   EmbreeScene fixed, moving;
-  std::vector<Bound> bounds;  // of the instances, where the last Update put them
-  bool fresh = true;          // never committed
+  std::vector<Bound> bounds;  // of the instances, at the poses of the last Update
+  bool fresh = true;          // not committed yet
 
   Impl(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane)
       : groups(GroupGeoms(model, skip_body, is_pane)),
@@ -208,7 +209,7 @@ struct RayScene::Impl {
       throw MachineError("ray casting: Embree could not build its scene");
   }
 
-  // Whether what moves is worth asking, once these rays have met what is fixed.
+  // Whether the moving geoms need a query after these rays have hit the fixed ones.
   template <class Packet>
   bool MayMeetMoving(const Packet& ray) const {
     return bounds.size() > kBoundsMax ||

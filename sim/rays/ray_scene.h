@@ -1,9 +1,10 @@
-// Casts rays into the MuJoCo model with Embree. It gives the answers of mj_ray, in single precision and many times faster.
+// Casts rays into the MuJoCo model with Embree. It gives the answers of mj_ray, in single precision and many times
+// faster.
 //
 // Rays meet every visible geom (group 0-2 and alpha > 0; where a geom has a material, the material's alpha counts).
 // Planes are seen from above only, and infinite ones reach 1000 m each way; other geoms are seen from inside too.
-// Everything fixed is one Embree scene. Every body that moves is an instance in a second one: Update moves the instances,
-// and Cast asks both scenes. All coordinates are in the world frame.
+// Everything fixed is one Embree scene. Every body that moves is an instance in a second one: Update moves the
+// instances, and Cast asks both scenes. All coordinates are in the world frame.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -38,40 +39,40 @@ struct Face {
 struct Ray {
   Eigen::Vector3f origin{0, 0, 0};     // world
   Eigen::Vector3f direction{1, 0, 0};  // unit, world
-  float max_range_m = 100.0f;          // beyond it nothing is seen
+  float max_range_m = 100.0f;          // farther hits do not count
 };
 
-// Geoms of one body that moves, in the world.
+// The geoms of a moving body, in the world.
 struct Mover {
   int body = 0;
-  Eigen::Vector3d middle{0, 0, 0};  // of a sphere around them
+  Eigen::Vector3d middle{0, 0, 0};  // of the bounding sphere
   double radius_m = 0.0;
-  double speed_m_s = 0.0;  // no point of them is faster
+  double speed_m_s = 0.0;  // upper bound of the speed of their points
 };
 
 enum class Panes { kSeen, kLookedThrough };
 
 class RayScene {
  public:
-  // Every body where the model puts it. Throws InputError for a geom it cannot see (height field, signed distance
-  // field), MachineError when Embree does not start. Left out are the geoms of the bodies for which skip_body(body_id)
-  // is true (the camera's own car). Geoms for which is_pane(geom_id) is true can be looked through; empty: none.
+  // Places every body in the model's reference pose. Throws InputError for a geom that cannot be traced (height field,
+  // signed distance field), MachineError if Embree does not start. skip_body(body_id): true leaves out the body's geoms
+  // (those of the camera's own car). is_pane(geom_id): true for geoms that can be looked through; empty: none.
   RayScene(const mjModel* model, const std::vector<bool>& skip_body, const std::vector<bool>& is_pane = {});
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // Moves the bodies to where they are dt_s later. Not to be called while rays are traced.
+  // Moves the bodies to their poses dt_s later. Must not be called while rays are being traced.
   void Update(const BodyMotions& bodies, double dt_s = 0.0);
-  // hits has the size of rays. Rays are traced in packets of eight in the order given: the same call gives the same
-  // bits, so a caller who splits rays between threads must not let the number of threads decide what one call holds.
+  // hits has the size of rays. Rays are traced in packets of eight in the given order, so the same call gives the same
+  // bits. A caller that distributes rays over threads must split them independently of the number of threads.
   void Cast(std::span<const Ray> rays, std::span<RayHit> hits, Panes panes = Panes::kSeen) const;
-  // blocked[i] = 1 where ray i meets anything before its max_range_m.
+  // blocked[i] = 1 if ray i hits anything before its max_range_m.
   void Occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, Panes panes) const;
   int BodyOf(int geom) const;
-  // The planes that RayHit::face counts, where the last Update put them.
+  // The planes that RayHit::face counts, at the poses of the last Update.
   const std::vector<Face>& faces() const;
-  // The visible groups whose bodies move.
+  // The visible groups of moving bodies.
   std::vector<Mover> Movers(const BodyMotions& bodies) const;
 
  private:
