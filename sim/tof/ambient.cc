@@ -11,7 +11,7 @@
 namespace merlin::sim {
 namespace {
 
-constexpr double kSkyShare = 0.1;  // engineering guess: irradiance of a clear sky at 870 nm, relative to the sun's
+constexpr double kSkyShare = 0.1;  // guess: irradiance of a clear sky at 870 nm over that of the sun
 constexpr float kSkyDistance_m = 100.0f;
 
 Ray RayFrom(const LitPoint& from, const Eigen::Vector3f& direction, float max_range_m) {
@@ -40,7 +40,8 @@ void AddSun(const RayScene& scene, const Surroundings& around, std::span<const L
   }
 }
 
-// A window as a small lamp of the sky's radiance: a disc of its area, which keeps the sum finite beside it.
+// A window as a small lamp with the radiance of the sky: a disc of the same area, which keeps the sum finite close to
+// it.
 void AddSky(const RayScene& scene, const Surroundings& around, const Window& window, std::span<const LitPoint> points,
             std::span<float> lit) {
   const double radiance = kSkyShare * around.sun->irradiance_w_m2_nm / std::numbers::pi;
@@ -63,7 +64,7 @@ void AddSky(const RayScene& scene, const Surroundings& around, const Window& win
     if (!blocked[r]) lit[of[r]] += static_cast<float>(radiance * gain[r]);
 }
 
-// Of one row of pixels: a mixed one at every sub-ray, else at its middle.
+// Sub-rays of one row of pixels at which light is computed: all of a mixed pixel, else the middle one.
 template <class Take>
 void ForLitSubRays(const Optics& optics, const MidHits& mid, int row, const Take& take) {
   const std::size_t n = static_cast<std::size_t>(optics.per_pixel), width = static_cast<std::size_t>(optics.width);
@@ -73,7 +74,7 @@ void ForLitSubRays(const Optics& optics, const MidHits& mid, int row, const Take
   }
 }
 
-// One sub-ray of each face that a pixel sees, the nearest to its middle.
+// Adds one sub-ray of each face that a pixel sees, the nearest to its middle.
 void AddOneOfEachFace(const Optics& optics, const MidHits& mid, std::size_t pixel, std::vector<std::size_t>& sub_rays) {
   constexpr std::array<std::size_t, 9> kFromTheMiddle{4, 1, 3, 5, 7, 0, 2, 6, 8};
   const std::size_t first_of_pixel = sub_rays.size();
@@ -86,7 +87,7 @@ void AddOneOfEachFace(const Optics& optics, const MidHits& mid, std::size_t pixe
   }
 }
 
-// For each of these sub-rays; bit b: something is between it and board b.
+// For each of these sub-rays: bit b is set if something is between it and board b.
 std::vector<std::uint8_t> BoardsBlocked(const RayScene& scene, const Optics& optics, const MidHits& mid,
                                         std::span<const std::size_t> sub_rays) {
   std::vector<std::uint8_t> bits(sub_rays.size(), 0), blocked(sub_rays.size());
@@ -104,7 +105,7 @@ std::vector<std::uint8_t> BoardsBlocked(const RayScene& scene, const Optics& opt
   return bits;
 }
 
-// False: the neighbours are of other faces, or disagree.
+// False if the neighbours see other faces, or do not agree.
 bool ShadeAsNeighbours(const Optics& optics, const MidHits& mid, int u, int v, std::span<std::uint8_t> shadow) {
   const auto middle = [&](int x, int y) { return optics.Middle(static_cast<std::size_t>(y * optics.width + x)); };
   const std::size_t pixel = static_cast<std::size_t>(v * optics.width + u), mine = optics.Middle(pixel);
@@ -168,7 +169,8 @@ std::vector<float> AmbientOfPixels(const RayScene& scene, const Surroundings& ar
 std::vector<std::uint8_t> LampShadows(const RayScene& scene, const Optics& optics, const MidHits& mid, int threads) {
   const std::size_t n = static_cast<std::size_t>(optics.per_pixel);
   std::vector<std::uint8_t> shadow(mid.hits.size(), 0);
-  // Every second pixel and all that see an edge, then those between whose neighbours do not say it already.
+  // First every second pixel and all that see an edge; then the pixels in between for which the neighbours do not
+  // decide.
   for (const bool between : {false, true}) {
     ParallelFor(optics.height, threads, [&](int v) {
       std::vector<std::size_t> sub_rays;

@@ -1,5 +1,5 @@
-// Light that does not come from the camera's lamp: the sun through windows, the sky, the room's own lamps. It carries no
-// modulation; it adds electrons, and with them noise and saturation.
+// Light that does not come from the camera's lamp: the sun through windows, the sky, the room's own lamps. It carries
+// no modulation; it adds electrons, and with them noise and saturation.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ struct LitPoint {
   Eigen::Vector3f normal{0, 0, 1};  // unit
 };
 
-// Spectral irradiance [W/m2/nm] of each point: the room's own, the sun where it reaches (a pane in between takes its
-// share), and the sky through each window.
+// Spectral irradiance [W/m2/nm] of each point: the room's own light, the sun if it reaches the point (attenuated by
+// panes), and the sky through each window.
 std::vector<float> Irradiance(const RayScene& scene, const Surroundings& around, std::span<const LitPoint> points);
 
-// Albedo times irradiance as each pixel sees it [W/m2/nm], light through panes and from mirrors included.
+// Albedo times irradiance for each pixel [W/m2/nm], including light through panes and from mirrors.
 std::vector<float> AmbientOfPixels(const RayScene& scene, const Surroundings& around, const Optics& optics,
                                    const MidHits& mid, std::span<const ExtraReturn> extra, int threads);
 
-// For each sub-ray; bit b: something is between board b and what the sub-ray meets.
+// For each sub-ray: bit b is set if something is between board b and what the sub-ray hits.
 std::vector<std::uint8_t> LampShadows(const RayScene& scene, const Optics& optics, const MidHits& mid, int threads);
 
 }  // namespace merlin::sim

@@ -9,9 +9,9 @@ namespace merlin::sim {
 namespace {
 
 constexpr int kTableSize = 1024;
-constexpr std::uint16_t kPatternPurpose = 1;  // of robot/base/random.h: not the stream of any frame
+constexpr std::uint16_t kPatternPurpose = 1;  // of robot/base/random.h; not the stream of any frame
 
-// A quadratic over the picture, x and y in [-1, 1], its largest value 1 and its mean about 0.
+// A quadratic over the image, x and y in [-1, 1], with a largest value of 1 and a mean of about 0.
 double Quadratic(double x, double y) { return 0.75 * (x * x + y * y - 2.0 / 3.0) + 0.25 * x * y; }
 
 }  // namespace
@@ -62,14 +62,14 @@ double WigglingError_rad(double phase_rad, const DepthCameraErrors& errors) {
 
 WigglingCorrection::WigglingCorrection(const DepthCameraErrors& errors, double frequency_hz)
     : frequency_hz_(frequency_hz) {
-  // A sinusoid of this peak has the residual's rms.
+  // A sinusoid of this amplitude has the rms of the residual.
   const double peak_rad = std::abs(errors.harmonic_3 - errors.harmonic_5);
   const double residual_rad =
       errors.wiggling_residual_m * std::numbers::sqrt2 * 4.0 * std::numbers::pi * frequency_hz / kSpeedOfLight_m_s;
   const double taken_off = peak_rad > residual_rad ? 1.0 - residual_rad / peak_rad : 0.0;
   for (int i = 0; i <= kTableSize; ++i) {
     const double decoded_rad = 2.0 * std::numbers::pi * i / kTableSize;
-    double phase_rad = decoded_rad;  // fixed point: the slope of the error is about 4 (a3 - a5), below 1
+    double phase_rad = decoded_rad;  // fixed-point iteration: the slope of the error is about 4 (a3 - a5), below 1
     for (int step = 0; step < 30; ++step) phase_rad = decoded_rad - WigglingError_rad(phase_rad, errors);
     table_rad_.push_back(taken_off * WigglingError_rad(phase_rad, errors));
   }

@@ -1,4 +1,4 @@
-// Errors that a camera itself adds to every phase, and how much of them its factory calibration subtracts again.
+// Phase errors that the camera itself causes, and the part of them that its factory calibration subtracts again.
 #pragma once
 
 #include <vector>
@@ -10,27 +10,28 @@
 
 namespace merlin::sim {
 
-// The peculiarities of every pixel of one specimen, drawn from (seed, pixel). Phase errors as lengths [m].
+// The fixed pattern of one specimen, drawn from (seed, pixel). Phase errors as lengths [m].
 struct FixedPattern {
   FixedPattern(const DepthCameraSheet& sheet, const DepthCameraErrors& errors, const TofEffects& effects,
                std::uint64_t seed);
   std::vector<PixelTraits> traits;
-  std::vector<float> range_m;  // what the pixel adds
-  std::vector<float> known_m;  // how much of that the calibration subtracts
+  std::vector<float> range_m;  // error of the pixel
+  std::vector<float> known_m;  // part of it that the calibration subtracts
 };
 
-// Drift [m]: what the temperatures of camera and room add at time since_cold; how much of that the calibration
+// Drift [m] that the temperatures of camera and room cause at time since_cold, and the part of it that the calibration
 // subtracts.
 struct Drift {
   double range_m = 0.0, known_m = 0.0;
 };
 Drift DriftAt(const DepthCameraErrors& errors, const TofEffects& effects, Time since_cold, double room_c);
 
-// Phase error [rad] that harmonics make in the four-phase decoding: exactly, by its sums. About
+// Phase error [rad] that harmonics cause in the four-phase decoding, computed exactly from its sums. It is about
 // -(harmonic_3 - harmonic_5) sin(4 phase).
 double WigglingError_rad(double phase_rad, const DepthCameraErrors& errors);
 
-// Subtracts the wiggling from a decoded phase, all but a residual of errors.wiggling_residual_m rms. A table over the phase.
+// Subtracts the wiggling from a decoded phase, all but a residual of errors.wiggling_residual_m rms. A table over the
+// phase.
 class WigglingCorrection {
  public:
   WigglingCorrection(const DepthCameraErrors& errors, double frequency_hz);
@@ -40,7 +41,7 @@ class WigglingCorrection {
 
  private:
   double frequency_hz_;
-  std::vector<double> table_rad_;  // over [0, 2 pi), and once more the first
+  std::vector<double> table_rad_;  // over [0, 2 pi), with the first value repeated at the end
 };
 
 }  // namespace merlin::sim

@@ -7,7 +7,7 @@
 namespace merlin::sim {
 namespace {
 
-// Above this mean, shot and read noise are one Gaussian: half the random numbers.
+// Above this mean, shot and read noise are drawn as one Gaussian, which takes half as many random numbers.
 constexpr double kGaussianAbove_e = 50.0;
 
 constexpr double kHotFullWells = 10.0;
@@ -49,7 +49,7 @@ Taps Chip::Expose(const PixelLight& light, const PixelTraits& pixel, double inte
 
   Taps taps{.a_e = 0.5 * (total_e + correlation_e) * (1.0 + pixel.gain) + pixel.offset_e,
             .b_e = 0.5 * (total_e - correlation_e) * (1.0 - pixel.gain) + pixel.offset_e};
-  if (effects_.sbi && has_sbi_ && !pixel.hot)  // what leaks into a hot pixel is no light that both taps share
+  if (effects_.sbi && has_sbi_ && !pixel.hot)  // charge that leaks into a hot pixel is not light common to both taps
     taps.suppressed_e = std::clamp(std::min(taps.a_e, taps.b_e) - sbi_onset_e_, 0.0, sbi_max_e_);
   if (effects_.noise) taps.suppression_variance_e2 = sbi_noise_ * taps.suppressed_e;
   for (double* tap : {&taps.a_e, &taps.b_e}) {

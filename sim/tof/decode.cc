@@ -13,7 +13,7 @@ double Wrapped(double range_m, double period_m) {
   return wrapped < period_m ? wrapped : 0.0;
 }
 
-// A range just below the wrap may round up to it.
+// Rounding may turn a range just below the wrap into the wrap itself.
 float BelowWrap(double range_m, double period_m) {
   const float range = static_cast<float>(range_m);
   return range < period_m ? range : std::nextafter(static_cast<float>(period_m), 0.0f);

@@ -1,5 +1,5 @@
-// From the taps of four (or eight) sub-frames to a frame: phase and so range, amplitude, intensity, flags. The factory
-// calibration is subtracted here. The maker's post-processing follows if the settings ask for it.
+// Turns the taps of four (or eight) sub-frames into a frame: phase and from it range, amplitude, intensity, flags. The
+// factory calibration is subtracted here. The manufacturer's post-processing follows if the settings ask for it.
 #pragma once
 
 #include <span>
@@ -13,12 +13,12 @@ namespace merlin::sim {
 
 class Decoder {
  public:
-  // pattern and corrections must outlive it; corrections: of every frequency in use, or none at all.
+  // pattern and corrections must outlive this. corrections: for every frequency in use, or none at all.
   Decoder(const DepthCameraSheet& sheet, const DepthSettings& settings, const FixedPattern& pattern,
           std::span<const WigglingCorrection> corrections, const Drift& drift);
 
   DepthFrame EmptyFrame(Time stamp, std::uint64_t index) const;
-  // taps: of the settings' sub-frames. lit: something came back from the lamp.
+  // taps: of the sub-frames of the settings. lit: some light of the lamp has come back.
   void Decode(std::span<const Taps> taps, bool lit, std::size_t pixel, DepthFrame& frame) const;
 
  private:
@@ -38,15 +38,16 @@ class Decoder {
   std::vector<Wave> waves_;
 };
 
-// Of two wrapped ranges the one range both can mean: the pair of periods whose ranges differ least, weighted with
-// (f amplitude)^2, as their variances are. Right while the ranges' errors differ by less than half of what the periods'
-// multiples come apart by: 1.249 m at 20 and 30 MHz (Droeschel, Holz, Behnke, IROS 2010).
+// Resolves two wrapped ranges to the one range that fits both: the pair of periods whose ranges differ least, averaged
+// with weights (f amplitude)^2, the inverse variances. Correct while the errors differ by less than half the smallest
+// distance between multiples of the two periods: 1.249 m at 20 and 30 MHz (Droeschel, Holz, Behnke, IROS 2010).
 struct WrappedRange {
   double range_m = 0.0, period_m = 0.0, weight = 0.0;
 };
 double Unwrap_m(const WrappedRange& first, const WrappedRange& second, double unambiguous_m);
 
-// The maker's own: pixels of low amplitude become kInvalid with range 0, then a 3x3 median over the valid ones.
+// The manufacturer's post-processing: pixels of low amplitude become kInvalid with range 0, then a 3x3 median over the
+// valid ones.
 void PostProcess(DepthFrame& frame);
 
 }  // namespace merlin::sim

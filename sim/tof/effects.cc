@@ -67,7 +67,7 @@ std::span<const TofEffectName> TofEffectNames() { return kEffects; }
 
 TofEffects ParseTofEffects(const std::string& text) {
   std::string_view rest = text;
-  // What is only taken out is taken out of all; what is only named is put into none.
+  // A list that only removes effects starts from all; a list that only names effects starts from none.
   TofEffects effects = Trim(rest).starts_with('-') ? TofEffects{} : kIdealTof;
   while (true) {
     const auto comma = rest.find(',');

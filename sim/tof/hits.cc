@@ -11,13 +11,13 @@ namespace {
 
 constexpr float kGrazing = 1e-6f;
 
-// Of one row of the grid, the sub-rays of this colour of the chessboard.
+// Calls take for the sub-rays of one row that have this colour in a chessboard pattern.
 template <class Take>
 void ForEverySecond(const SubGrid& grid, int y, int color, const Take& take) {
   for (int x = (y + color) % 2; x < grid.width; x += 2) take(x, grid.SubRay(x, y));
 }
 
-// The face that all neighbours of a sub-ray share, or kCurvedFace: they share none.
+// The face that all neighbours of a sub-ray share; kCurvedFace if they do not share one.
 int SharedFace(const SubGrid& grid, std::span<const RayHit> hits, int x, int y) {
   std::array<std::size_t, 4> neighbours;
   std::size_t count = 0;
@@ -60,7 +60,7 @@ int InstantOf(const Optics& optics, std::size_t sub_ray) {
   return static_cast<int>(sub_ray / kSubRaysPerEdge + sub_ray % kSubRaysPerEdge) % SubFrame::kInstants;
 }
 
-// A pixel is narrowest, seen from the lens, at the picture's edge.
+// Angle of the narrowest pixel as seen from the lens, which is at the edge of the image.
 double NarrowestPixel_rad(const Optics& optics) {
   return std::min(2.0 * optics.tan_half_x / optics.width, 2.0 * optics.tan_half_y / optics.height) /
          (1.0 + optics.tan_half_x * optics.tan_half_x + optics.tan_half_y * optics.tan_half_y);
@@ -188,7 +188,7 @@ void SubFrameTracer::Row(int v, RowHits& row, RowRays& work) const {
   const std::size_t first = static_cast<std::size_t>(v) * width * n;
   const FramePlan::Row& plan = plan_.rows[static_cast<std::size_t>(v)];
   row.Resize(width * n);
-  const SeenFace nothing{.distance_m = -kGrazing};  // its range is -1: nothing
+  const SeenFace nothing{.distance_m = -kGrazing};  // gives the range -1: nothing
   for (const FramePlan::Stretch& stretch : plan.calm) {
     const std::size_t instant = static_cast<std::size_t>(InstantOf(optics_, stretch.begin / width));
     FromPlane(stretch, stretch.face < 0 ? nothing : seen_[static_cast<std::size_t>(stretch.face)][instant], first, row);
@@ -220,7 +220,7 @@ void RowOfMid(const Optics& optics, const MidHits& mid, int v, RowHits& row) {
 
 double PictureMotion_px(const Optics& optics, const RayScene& scene, const MidHits& mid, const Mover& mover,
                         double span_s) {
-  // Where it is seen, as far as it is seen. Elsewhere: hidden, or outside the picture's corner by more than it can move.
+  // Uses the nearest visible part. If there is none, its bounding sphere: it is hidden, or beside the image.
   float nearest_m = HUGE_VALF;
   for (const RayHit& hit : mid.hits)
     if (hit.geom >= 0 && scene.BodyOf(hit.geom) == mover.body) nearest_m = std::min(nearest_m, hit.range_m);

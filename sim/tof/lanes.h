@@ -1,5 +1,5 @@
-// MERLIN_SIDE_BY_SIDE: put before a loop to tell the compiler that its arrays do not overlap, so that it may vectorise the
-// loop. With many arrays it gives up checking this itself at run time.
+// MERLIN_SIDE_BY_SIDE before a loop tells the compiler that its arrays do not overlap, so that it can vectorise the
+// loop. With many arrays it does not check this itself at run time.
 #pragma once
 
 #ifdef __clang__

@@ -10,13 +10,13 @@
 namespace merlin::sim {
 namespace {
 
-constexpr int kBand = 6;  // rows that one thread does in one go
+constexpr int kBand = 6;  // rows that one thread processes together
 
 double WaveNumber(double frequency_hz) { return 4.0 * std::numbers::pi * frequency_hz / kSpeedOfLight_m_s; }
 
 }  // namespace
 
-// Buffers that the rows of one thread share.
+// Scratch buffers that the rows of one thread share.
 struct LightModel::RowScratch {
   explicit RowScratch(const Optics& optics)
       : work(static_cast<std::size_t>(optics.width), static_cast<std::size_t>(optics.per_pixel)),
@@ -52,8 +52,8 @@ bool LightModel::Moves(const TofView& view) const {
   return effects_.motion && (!view.camera.still() || !view.scene.Movers(view.bodies).empty());
 }
 
-// A plane, moving or not, needs no rays where no edge, the camera's motion and its own together, comes near within the
-// exposure.
+// Sub-rays that need no tracing in the sub-frames: they see a plane, moving or not, and within the exposure no edge
+// comes near them, by the motion of the camera and of the edge together.
 std::vector<std::uint8_t> LightModel::Calm(const TofView& view, const MidHits& mid,
                                            const DepthSettings& settings) const {
   float nearest_m = 100.0f;
@@ -169,12 +169,12 @@ std::vector<Phasors> LightModel::Bounce(const TofView& view, const Still& still,
     if (hit.geom < 0) continue;
     bounce[pixel].Scale(K_T * optics_.lens[pixel] *
                         view.surroundings.material[static_cast<std::size_t>(hit.geom)].nir_albedo);
-    bounce[pixel].Turn(0.5 * wave_number * hit.range_m);  // back to the lens
+    bounce[pixel].Turn(0.5 * wave_number * hit.range_m);  // on the way back to the lens
   }
   return bounce;
 }
 
-// Offsets of the phase, as lengths: intensity, ambient light.
+// Phase errors from intensity and ambient light, as lengths.
 void LightModel::AddOffsets(double contrast, RowScratch& scratch) const {
   std::ranges::fill(scratch.offset, 0.0f);
   const std::vector<float>&re = scratch.light.re[0], &im = scratch.light.im[0];

@@ -1,7 +1,7 @@
-// The light of a frame: what reaches each pixel from lamp, sun and sky, by every path, up to the chip.
+// The light of a frame: all light that reaches each pixel from lamp, sun and sky, on every path, before the chip.
 //
 // What changes little during a frame is computed once, at mid-exposure (class Still): panes and mirrors, lamp shadows,
-// ambient light, the bounce. Then each sub-frame traces again what the motion of camera and bodies can have changed:
+// ambient light, the bounce. Each sub-frame then traces again what motion of the camera or the bodies can change:
 //
 //   Expose   for each sub-frame: move the bodies to its middle, then for each row of pixels
 //              SubFrameTracer::Row   ranges and normals
@@ -22,24 +22,24 @@
 
 namespace merlin::sim {
 
-// What the pixels collect in one sub-frame: electrons of both taps, and how they are shared (chip.h).
+// What the pixels collect in one sub-frame: electrons of both taps, and how they are shared between the taps (chip.h).
 struct LightImages {
   std::vector<float> total_e, correlation_e;
-  std::vector<std::uint8_t> lit;  // something came back from the lamp
+  std::vector<std::uint8_t> lit;  // some light of the lamp has come back
 };
 
 class LightModel {
  public:
   LightModel(const DepthCameraSheet& sheet, const DepthCameraErrors& errors, const TofEffects& effects, int threads);
 
-  // One for each sub-frame. Afterwards the scene's bodies are where they were in the last of them.
+  // One result for each sub-frame. Afterwards the bodies of the scene are at their poses in the last one.
   std::vector<LightImages> Expose(const TofView& view, const DepthSettings& settings, const FixedPattern& pattern,
                                   const Drift& drift) const;
   std::vector<SubFrame> SubFrames(const DepthSettings& settings) const;
   const Optics& optics() const { return optics_; }
 
  private:
-  // What is the same for every sub-frame: taken at mid-exposure.
+  // What all sub-frames share, computed at mid-exposure.
   struct Still {
     explicit Still(const Optics& optics) : mid(optics) {}
     MidHits mid;
@@ -48,13 +48,13 @@ class LightModel {
     std::vector<std::size_t> extra_from;  // [row], and the end
     std::vector<std::uint8_t> shadow;
     std::vector<float> ambient;   // [pixel] albedo times irradiance; empty: dark
-    std::vector<Phasors> bounce;  // [pixel] for the frequency at hand; empty: none
+    std::vector<Phasors> bounce;  // [pixel] for the present frequency; empty: none
   };
-  // What a sub-frame adds to it.
+  // What is specific to a sub-frame.
   struct Now {
-    const SubFrameTracer* tracer;  // none: nothing moves
+    const SubFrameTracer* tracer;  // null if nothing moves
     double frequency_hz, integration_s;
-    int k;  // of its four
+    int k;  // which of the four sub-frames of a frequency
   };
   Still TakeStill(const TofView& view) const;
   LightImages Expose(const Still& still, const Now& now, const FixedPattern& pattern, const Drift& drift) const;

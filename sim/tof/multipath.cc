@@ -13,15 +13,15 @@ namespace merlin::sim {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kFaint = 2e-3f;  // of what comes from all lights: no ray asks whether so faint a one is hidden
+constexpr float kFaint = 2e-3f;  // share of the sum of all lights below which no shadow ray is traced for a light
 constexpr float kSameNormal = 0.95f, kSamePlane_m = 0.05f;
 
-// What the lamp lights, as lamps themselves; world frame.
+// Surfaces lit by the lamp, as virtual lights; world frame.
 struct Lights {
   std::vector<float> x, y, z, normal_x, normal_y, normal_z;
   std::vector<float> range_m;  // from the lamp
   std::vector<float> power;    // albedo / pi times its share of the lamp's light: solid angle times lobe
-  std::vector<float> disc_m2;  // of surface it stands for, over pi
+  std::vector<float> disc_m2;  // area of surface that it stands for, over pi
 };
 
 struct Receiver {
@@ -78,7 +78,7 @@ struct GatherScratch {
   std::vector<std::uint8_t> blocked;
 };
 
-// Sum over the lights that reach a point: form factor of a disc, cos cos / (r^2 + A / pi) (Hanrahan's approximation).
+// Sum over the lights that reach a point. Form factor of a disc: cos cos / (r^2 + A / pi) (Hanrahan's approximation).
 Phasors Gather(const RayScene& scene, const Lights& lights, const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
                float wave_number, GatherScratch& scratch) {
   const std::size_t count = lights.power.size();
@@ -127,7 +127,7 @@ Phasors Gather(const RayScene& scene, const Lights& lights, const Eigen::Vector3
   return sum;
 }
 
-// Pixels on an even grid that are computed; the first and last column and row are among them.
+// Receivers: pixels on a regular grid that are computed. The first and last column and row are among them.
 struct ReceiverGrid {
   int columns, rows;
   double step_x, step_y;
@@ -153,7 +153,8 @@ void AddWeighted(Phasors& sum, const Phasors& light, float weight) {
   }
 }
 
-// Between the receivers around the pixel that lie on the same plane; none of them: the nearest one that does.
+// Interpolates between the receivers around the pixel that lie on the same plane; if there are none, takes the nearest
+// one that does.
 std::optional<Phasors> Between(const ReceiverGrid& grid, double u, double v, const RayHit& hit,
                                const Eigen::Vector3f& at) {
   const int i = std::clamp(static_cast<int>(u / grid.step_x), 0, std::max(0, grid.columns - 2));
@@ -178,8 +179,8 @@ std::optional<Phasors> Between(const ReceiverGrid& grid, double u, double v, con
   return mean;
 }
 
-// [pixel] of those without a receiver on their plane: the pixel, to the left or above, whose light they share, or they
-// themselves. What is indirect is smooth: over a few pixels of one plane it is the same.
+// For pixels without a receiver on their plane: [pixel] the pixel to the left or above whose light they share, or
+// themselves. Indirect light is smooth: over a few pixels of one plane it is the same.
 std::vector<std::size_t> AsAnother(const Optics& optics, const MidHits& mid, std::span<const std::uint8_t> alone) {
   constexpr int kReach_px = 2;
   const auto like = [&](std::size_t a, std::size_t b) {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kPerStep_rad = std::numbers::pi_v<float> * 0x1p-31f;
 
-// Natural logarithm of x in (0, 1], error < 2e-7 of it or of 1: the minimax polynomial of Cephes (Moshier, logf), without
-// branches. 2^-33 is the least that comes.
+// Natural logarithm of x in (0, 1], error < 2e-7 (absolute or relative): the minimax polynomial of Cephes (Moshier,
+// logf), without branches. x is at least 2^-33.
 inline float Log(float x) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
   float exponent = static_cast<float>(static_cast<int>(bits >> 23) - 126);
@@ -34,7 +34,7 @@ inline float Log(float x) {
   return m + y + 0.693359375f * exponent;
 }
 
-// (0, 1] in steps of 2^-32, or of what a float has; the small ones are exact.
+// Uniform in (0, 1], in steps of 2^-32 or the resolution of a float; small values are exact.
 inline float Uniform(std::uint32_t word) {
   return static_cast<float>(static_cast<int>(word >> 16)) * 0x1p-16f +
          (static_cast<float>(static_cast<int>(word & 0xFFFF)) + 0.5f) * 0x1p-32f;

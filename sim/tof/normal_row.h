@@ -9,14 +9,15 @@
 
 namespace merlin::sim {
 
-// Four of each of count neighbouring pixels, mean 0, sigma 1, [number][pixel]; |value| < 6.8. A pure function of seed,
-// sensor, frame, pixel, purpose and draw, with streams as Random's of the same purpose, from which it must differ.
+// Draws four numbers for each of count neighbouring pixels: mean 0, sigma 1, [number][pixel]; |value| < 6.8. A pure
+// function of seed, sensor, frame, pixel, purpose and draw. Streams are those of Random for the same purpose, so use
+// another purpose than Random.
 class NormalRow {
  public:
   explicit NormalRow(std::size_t count) : count_(count) {
     for (std::vector<float>& row : of) row.resize((count + 7) / 8 * 8);
   }
-  // draw: which four of a pixel's; first_pixel: of the row.
+  // draw: index of the four numbers within a pixel; first_pixel: of the row.
   void Draw(std::uint64_t seed, Sensor sensor, std::uint64_t frame, std::uint32_t first_pixel, std::uint16_t purpose,
             std::uint32_t draw);
 

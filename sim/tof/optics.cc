@@ -11,7 +11,7 @@ Optics::Optics(const DepthCameraSheet& sheet, const DepthCameraErrors& errors, c
       tan_half_x(0.5 * width / sheet.camera.fx_px),
       tan_half_y(0.5 * height / sheet.camera.fy_px),
       lobe_exponent(effects.lamp ? -std::log(errors.lamp_at_edge) : 0.0),
-      // Without its lobe a lamp lights what the camera sees; with it, also what lies beside that.
+      // A uniform lamp lights exactly the field of view; a lamp with a lobe also lights what lies beside it.
       lamp_reach(effects.lamp ? 1.6 : 1.0) {
   if (effects.lamp && errors.lamp_baseline_m > 0.0) {
     const float baseline = static_cast<float>(errors.lamp_baseline_m);

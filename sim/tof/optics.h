@@ -1,5 +1,5 @@
-// The lens and the lamp of a camera: the directions of its sub-rays (3 x 3 in a pixel), and how brightly each direction is
-// lit and seen.
+// The lens and the lamp of a camera: the directions of its sub-rays (3 x 3 per pixel), and how brightly each direction
+// is lit and seen.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +23,8 @@ struct Optics {
   Optics(const DepthCameraSheet& sheet, const DepthCameraErrors& errors, const TofEffects& effects);
 
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
-  // The index of a pixel's s-th sub-ray, s counted row by row: [row of pixels][s][column of pixels], so that what
-  // neighbours have in common lies side by side.
+  // Index of the s-th sub-ray of a pixel, where s counts row by row. The layout is [row of pixels][s][column of
+  // pixels], so that the same sub-ray of neighbouring pixels is contiguous.
   std::size_t SubRay(std::size_t pixel, std::size_t s) const {
     return first_sub_ray[pixel] + s * static_cast<std::size_t>(width);
   }
@@ -45,7 +45,7 @@ struct Optics {
   std::vector<float> lit_and_seen;         // [sub-ray] lens times lobe
   std::vector<Board> boards;               // one at the lens, or two beside it
   double tan_half_x, tan_half_y;           // of the field of view
-  double lobe_exponent;                    // 0: even
+  double lobe_exponent;                    // 0: uniform
   double lamp_reach;                       // how far the lamp shines, in fields of view
 };
 

@@ -9,8 +9,8 @@
 namespace merlin::sim {
 namespace {
 
-// The loops of a frame follow each other closely, with a little work of one thread in between: a thread looks out for the
-// next one this long before it sleeps. To be woken takes as long as some loops, and may put it onto the caller's own core.
+// The loops of a frame follow each other closely, with a little serial work in between. A thread spins for this long
+// before it sleeps, because waking takes as long as some loops and may put the thread onto the caller's core.
 constexpr std::chrono::microseconds kLookOut{500};
 
 template <class Condition>
@@ -41,7 +41,7 @@ class Crew {
     work();
     {
       const std::lock_guard lock(mutex_);
-      calls_.remove(&call);  // whoever has not joined by now finds nothing left to do
+      calls_.remove(&call);  // threads that have not joined by now would find no work
       waiting_ = static_cast<int>(calls_.size());
     }
     SpinUntil([&] { return call.running == 0; });
@@ -71,7 +71,7 @@ class Crew {
   std::condition_variable_any called_, returned_;
   std::list<Call*> calls_;
   std::atomic<int> waiting_{0};        // calls that want more threads
-  std::vector<std::jthread> threads_;  // last: stopped before what they wait for is gone
+  std::vector<std::jthread> threads_;  // last member: stopped before what they use is destroyed
 };
 
 }  // namespace

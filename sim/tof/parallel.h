@@ -1,4 +1,4 @@
-// One loop, several threads: for work that gives the same bits in any order.
+// Runs one loop on several threads. For work whose result does not depend on the order.
 #pragma once
 
 #include <algorithm>
@@ -9,11 +9,12 @@
 
 namespace merlin::sim {
 
-// Calls work on this thread and, as far as they are free, on up to others threads that wait for such calls (they stay for
-// the process' life: to start one takes as long as a small loop). Returns when all have returned. work must not throw.
+// Calls work on this thread and on up to `others` idle threads of a pool, and returns when all calls have returned. The
+// pool's threads stay for the lifetime of the process, because starting one takes as long as a small loop. work must
+// not throw.
 void OnSeveralThreads(int others, const std::function<void()>& work);
 
-// Calls work(i) once for each i in [0, count), on this thread and threads - 1 others. An exception of a call is rethrown here.
+// Calls work(i) once for each i in [0, count) on this thread and threads - 1 others. Rethrows an exception of a call.
 template <class Work>
 void ParallelFor(int count, int threads, const Work& work) {
   if (threads <= 1 || count <= 1) {

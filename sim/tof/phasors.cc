@@ -9,7 +9,7 @@
 namespace merlin::sim {
 namespace {
 
-constexpr float kNearest_m = 1e-3f;  // nothing is nearer to the pixel than its lens: keeps 1 / d^2 finite
+constexpr float kNearest_m = 1e-3f;  // no surface is nearer than the lens; keeps 1 / d^2 finite
 
 using In = const float*;
 using Out = float*;
@@ -23,7 +23,7 @@ void GatherAlbedo(const RowHits& hits, const PhasorScale& scale, RowWork& work) 
     work.albedo[i] = hits.geom[i] >= 0 ? scale.albedo[static_cast<std::size_t>(hits.geom[i])] : 0.0f;
 }
 
-// A lamp at the lens.
+// Light of a lamp at the lens.
 void LightFromLens(const RowHits& hits, const Optics& optics, std::size_t first, float scale, float wave_number,
                    RowWork& work) {
   const In dx = optics.x.data() + first, dy = optics.y.data() + first, dz = optics.z.data() + first;
@@ -40,8 +40,8 @@ void LightFromLens(const RowHits& hits, const Optics& optics, std::size_t first,
   }
 }
 
-// Boards beside it: the path of their light is their weighted mean: to second order in the difference what two phasors
-// would give.
+// Light of boards beside the lens, on the weighted mean of their paths. To second order in the difference this equals
+// the sum of two phasors.
 void LightFromBoards(const RowHits& hits, const Optics& optics, std::size_t first, float scale, float wave_number,
                      RowWork& work) {
   const In dx = optics.x.data() + first, dy = optics.y.data() + first, dz = optics.z.data() + first;
@@ -81,7 +81,7 @@ void GatherShadows(const RowHits& hits, const MidHits& mid, std::span<const std:
 void AddExtra(const RowHits& hits, const Optics& optics, const PhasorScale& scale, const ExtraReturn& extra,
               std::size_t first, PhasorRow& out) {
   const std::size_t i = extra.sub_ray - first;
-  if (hits.geom[i] != extra.geom) return;  // the pane has moved out of this sub-ray
+  if (hits.geom[i] != extra.geom) return;  // the pane is no longer in this sub-ray
   const double range_m = std::max(hits.range_m[i], kNearest_m) + extra.beyond_m;
   const double phase_rad = scale.wave_number_rad_per_m * range_m;
   const double electrons =

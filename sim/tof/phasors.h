@@ -1,5 +1,5 @@
-// The light of a pixel as phasors: one sum over all the paths that light takes to it. A pixel that sees two surfaces at an
-// edge mixes their phases in this sum, as a real one does (flying pixels).
+// The light of a pixel as phasors: one sum over all the paths on which light reaches it. A pixel that sees two surfaces
+// at an edge mixes their phases in this sum, like a real one (flying pixels).
 #pragma once
 
 #include <Eigen/Core>
@@ -29,14 +29,14 @@ struct Phasors {
   Phasors& operator+=(const Phasors& other);
 };
 
-// What turns a hit into electrons: N = scale albedo lit_and_seen cos / d^2.
+// Factors that turn a hit into electrons: N = scale albedo lit_and_seen cos / d^2.
 struct PhasorScale {
   double electrons_m2 = 0.0;         // K T / sub-rays of a pixel
   double wave_number_rad_per_m = 0;  // 4 pi f / c: phase of a range
-  std::span<const float> albedo;     // [geom], towards the lamp: a retro-reflector's is above 1
+  std::span<const float> albedo;     // [geom], towards the lamp: above 1 for a retro-reflector
 };
 
-// The phasors of one row of pixels, array by array, so that the compiler does several pixels at a time.
+// The phasors of one row of pixels as separate arrays, so that the compiler can vectorise over pixels.
 struct PhasorRow {
   explicit PhasorRow(std::size_t width);
   std::vector<float> total_e;
@@ -57,8 +57,8 @@ struct RowWork {
   std::array<std::vector<float>, 2> lit;                      // the same, by board
 };
 
-// shadow: [sub-ray] bit b: board b does not reach what that sub-ray met at mid-exposure; empty: no
-// shadows. extra: of this row.
+// shadow: [sub-ray] bit b is set if the light of board b does not reach what that sub-ray hit at mid-exposure; empty:
+// no shadows. extra: the further returns of this row.
 void RowPhasors(const RowHits& hits, const Optics& optics, const PhasorScale& scale, const MidHits& mid,
                 std::span<const std::uint8_t> shadow, std::span<const ExtraReturn> extra, int row, RowWork& work,
                 PhasorRow& out);

@@ -20,7 +20,7 @@ Eigen::Vector3f Mirrored(const Eigen::Vector3f& direction, const Eigen::Vector3f
   return (direction - 2.0f * direction.dot(normal) * normal).normalized();
 }
 
-// The lamp's own image: the mirrored ray ends on a board. A board of radiance I / A, seen in a mirror.
+// The lamp's mirror image: the mirrored ray ends on a board. It looks like a board of radiance I / A.
 float GlareStrength(const Eigen::Vector3f& point_camera, const Eigen::Vector3f& mirrored_camera, const Optics& optics,
                     double lamp_width_m, double reflected) {
   if (mirrored_camera.z() >= 0.0f) return 0.0f;

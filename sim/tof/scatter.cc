@@ -6,7 +6,7 @@
 namespace merlin::sim {
 namespace {
 
-// out[i] = sum of kernel[|k|] in[i + k], what lies outside is dark; n values with this stride of `lanes` neighbours.
+// out[i] = sum of kernel[|k|] in[i + k] for n values with a stride of `lanes`; values outside are dark.
 void Convolve(std::span<const float> in, std::span<float> out, std::size_t n, std::size_t lanes,
               std::span<const float> kernel) {
   for (std::size_t i = 0; i < n; ++i) {

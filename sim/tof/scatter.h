@@ -1,6 +1,6 @@
-// Light that is reflected to and fro between lens and chip: every pixel gets a little of the light of all others, with
-// their phases (Kavli et al.,
-// "Modelling and compensating measurement errors caused by scattering in time-of-flight cameras", SPIE 7066, 2008).
+// Light reflected back and forth between lens and chip: every pixel gets a little of the light of all others, with
+// their phases (Kavli et al., "Modelling and compensating measurement errors caused by scattering in time-of-flight
+// cameras", SPIE 7066, 2008).
 #pragma once
 
 #include <span>
@@ -13,14 +13,14 @@ namespace merlin::sim {
 class Scatter {
  public:
   Scatter(int width, int height, const DepthCameraErrors& errors);
-  // image' = (1 - s) image + s (PSF * image), in place. What leaves the picture is lost; the even part is the mean. The
-  // correlation images of the sub-frames are linear in the phasors: to scatter these is to scatter those.
+  // image' = (1 - s) image + s (PSF * image), in place. Light beyond the edge of the image is lost; the uniform part of
+  // the PSF is the mean. It acts on the phasors, because the correlation images are linear in them.
   void Apply(std::span<float> image) const;
 
  private:
   int width_, height_;
   float share_, flat_;
-  std::vector<float> kernel_;  // of the Gaussian part, one side from the middle on
+  std::vector<float> kernel_;  // Gaussian part, from the middle to one side
 };
 
 }  // namespace merlin::sim

@@ -16,8 +16,8 @@ SubGrid::SubGrid(const Optics& optics)
 std::vector<std::uint8_t> CalmSubRays(const SubGrid& grid, std::span<const RayHit> hits, int reach) {
   std::vector<std::uint8_t> calm(hits.size(), 0);
   if (reach < 0 || 2 * reach >= std::min(grid.width, grid.height)) return calm;
-  // Of this row and the one before: the face; in how many rows above, this one included, a sub-ray and those beside it are
-  // of one and the same face.
+  // For each column: the face in this row and in the row above, and for how many rows up to this one the sub-ray and
+  // its neighbours within reach have all been of this one face.
   std::vector<int> face(static_cast<std::size_t>(grid.width)), above(face.size()), tall(face.size(), 0);
   for (int y = 0; y < grid.height; ++y) {
     for (int x = 0; x < grid.width; ++x) face[static_cast<std::size_t>(x)] = hits[grid.SubRay(x, y)].face;

@@ -1,5 +1,5 @@
-// The sub-rays of all pixels as one picture, and the parts of it where only one plane is seen. There nothing needs to be
-// traced again when the camera moves a little: where a ray meets a known plane is one division.
+// The sub-rays of all pixels as one image, and the parts of it that see only one plane. There nothing needs to be
+// traced again when the camera moves a little: the range of a known plane takes one division.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace merlin::sim {
 
-// Three times (or once) as wide and high as the pixels' picture.
+// Three times (or once) as wide and high as the image of pixels.
 struct SubGrid {
   explicit SubGrid(const Optics& optics);
   std::size_t SubRay(int x, int y) const {
@@ -21,8 +21,8 @@ struct SubGrid {
   std::vector<std::size_t> row_begin, in_row;  // of the index
 };
 
-// For each sub-ray; 1: all sub-rays up to reach away in x and y meet the same plane as it does, or nothing as it does; 0
-// also near the picture's edge.
+// For each sub-ray: 1 if all sub-rays within `reach` in x and y hit the same plane as it does, or nothing as it does; 0
+// otherwise, and near the edge of the image.
 std::vector<std::uint8_t> CalmSubRays(const SubGrid& grid, std::span<const RayHit> hits, int reach);
 
 // Range of a face along a unit direction.

@@ -1,5 +1,5 @@
-// What a time-of-flight camera needs to know of a room besides its geometry: materials in the near infrared, sun, sky and
-// lamps.
+// Properties of a room, besides its geometry, that a time-of-flight camera depends on: materials in the near infrared,
+// sun, sky and lamps.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -14,10 +14,10 @@ namespace merlin::sim {
 
 struct Sun {
   Eigen::Vector3d to_sun{0, 0, 1};  // unit, world
-  double irradiance_w_m2_nm = 0.8;  // at 870 nm, on a surface that faces it; about 1 outdoors at noon
+  double irradiance_w_m2_nm = 0.8;  // at 870 nm on a surface facing the sun; about 1 outdoors at noon
 };
 
-// A pane through which the sky lights the room: its middle, the normal into either side, its area.
+// A pane through which the sky lights the room: its middle, its normal (towards either side), its area.
 struct Window {
   Eigen::Vector3d middle{0, 0, 0};
   Eigen::Vector3d normal{1, 0, 0};
@@ -38,7 +38,7 @@ struct Surroundings {
 // for a number that is negative or not finite.
 Surroundings SurroundingsOf(const mjModel* model, const Materials& materials);
 
-// [geom id] whether it can be looked through: for RayScene.
+// [geom id] whether it can be looked through; for RayScene.
 std::vector<bool> PanesOf(const Surroundings& around);
 
 }  // namespace merlin::sim

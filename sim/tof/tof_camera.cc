@@ -14,7 +14,7 @@
 namespace merlin::sim {
 namespace {
 
-constexpr std::uint16_t kNormals = 1;  // purpose of the taps' Gaussian noise; few electrons draw from purpose 0
+constexpr std::uint16_t kNormals = 1;  // purpose of the Gaussian noise of taps; single electrons use 0
 
 }  // namespace
 
@@ -61,7 +61,7 @@ DepthFrame TofCamera::Expose(const TofView& view, const DepthSettings& settings,
   DepthFrame frame = decoder.EmptyFrame(stamp, index);
   ParallelFor(frame.height, my.threads, [&](int v) {
     const std::size_t width = static_cast<std::size_t>(frame.width), first = static_cast<std::size_t>(v) * width;
-    // Two images' four taps a draw.
+    // One draw serves the four taps of two images.
     std::vector<NormalRow> normals(images.size() / 2, NormalRow(width));
     for (std::size_t draw = 0; draw < normals.size(); ++draw)
       normals[draw].Draw(my.seed, Sensor::kDepth, index, static_cast<std::uint32_t>(first), kNormals,
@@ -84,8 +84,8 @@ DepthFrame TofCamera::Expose(const TofView& view, const DepthSettings& settings,
   return frame;
 }
 
-// First-order: var(phase) = (I^2 var(Q) + Q^2 var(I)) / (I^2 + Q^2)^2, through the slope of the correction; ranges of two
-// frequencies by their weights.
+// First order: var(phase) = (I^2 var(Q) + Q^2 var(I)) / (I^2 + Q^2)^2, times the slope of the correction. Ranges of two
+// frequencies count with their weights.
 double TofCamera::Impl::Sigma_m(const std::vector<LightImages>& images, std::size_t pixel,
                                 const DepthSettings& settings) const {
   TofEffects mean = effects;

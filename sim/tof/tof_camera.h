@@ -1,6 +1,6 @@
-// The time-of-flight camera: what the pixels of a PMD chip measure of a scene. The lamp's light is modulated; the phase of
-// what comes back tells how far it has travelled. A frame is four phase images (sub-frames) taken one after the other, so
-// whatever moves meanwhile is measured at four places. Each stage is a file of its own and reads as one step:
+// The time-of-flight camera: what the pixels of a PMD chip measure of a scene. The lamp's light is modulated; the phase
+// of the returning light tells how far it has travelled. A frame is four phase images (sub-frames) taken one after the
+// other, so anything that moves meanwhile is measured at four positions. Each stage is a file of its own:
 //
 //   optics      where each sub-ray of a pixel looks, how bright the lamp is there
 //   hits        what the sub-rays meet, at mid-exposure and again in each sub-frame
@@ -14,8 +14,8 @@
 //
 // Frames: world (the room's), camera (optical: z forward, x right, y down). A range is measured along the ray.
 // After Keller and Kolb, "Real-time simulation of time-of-flight sensors", Simulation Modelling Practice and Theory 17
-// (2009), and Lambers, Hoberg, Kolb, "Simulation of time-of-flight sensors for evaluation of chip layout variants", IEEE
-// Sensors Journal 15(7) (2015).
+// (2009), and Lambers, Hoberg, Kolb, "Simulation of time-of-flight sensors for evaluation of chip layout variants",
+// IEEE Sensors Journal 15(7) (2015).
 #pragma once
 
 #include <cstdint>
@@ -35,12 +35,12 @@ class TofCamera {
   ~TofCamera();
   TofCamera(TofCamera&&) noexcept;
 
-  // settings must be valid ones of the sheet. stamp: mid-exposure, since the camera was switched on. A pixel that
-  // nothing returns light to is kInvalid, and its range is 0. A pixel's noise depends on (seed, index, pixel) alone. The
+  // settings must be valid for the sheet. stamp: mid-exposure, in time since the camera was switched on. A pixel
+  // without returning light is kInvalid, with range 0. The noise of a pixel depends only on (seed, index, pixel). The
   // bits are the same for any number of threads.
   DepthFrame Expose(const TofView& view, const DepthSettings& settings, Time stamp, std::uint64_t index) const;
 
-  // What that frame would be without errors, and by how much each effect changes it.
+  // The same frame without errors, and how much each effect changes it.
   TofTruth Truth(const TofView& view, const DepthSettings& settings, Time stamp) const;
 
  private:

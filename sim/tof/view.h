@@ -7,7 +7,7 @@
 
 namespace merlin::sim {
 
-// camera: the optical frame at mid-exposure; it and the bodies move on at constant velocity through the sub-frames.
+// camera: the optical frame at mid-exposure. It and the bodies move at constant velocity through the sub-frames.
 struct TofView {
   RayScene& scene;
   const Surroundings& surroundings;
