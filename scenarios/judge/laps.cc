@@ -16,8 +16,7 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() 
 // Centroid of the area, for either order of the corners; none for an outline without area.
 std::optional<Eigen::Vector2d> Centroid(const Outline& outline) {
   if (outline.size() < 3) return std::nullopt;
-  const Eigen::Vector2d origin =
-      outline.front();  // keeps the products small if the room is far from the world's origin
+  const Eigen::Vector2d origin = outline.front();  // keeps the products small far from the world's origin
   double doubled_area_m2 = 0.0, size_m2 = 0.0;
   Eigen::Vector2d moment = Eigen::Vector2d::Zero();
   for (std::size_t i = 1; i + 1 < outline.size(); ++i) {

@@ -178,8 +178,8 @@ std::vector<std::string> PreflightMoving(const Robot& robot, const CarDescriptio
   } catch (const Interrupted&) {
   }
   try {
-    UseDevice("drive",
-              [&] { robot.drive->Send({}); });  // in every case: this command expires at once, so the car brakes
+    // In every case: this command expires at once, so the car brakes.
+    UseDevice("drive", [&] { robot.drive->Send({}); });
   } catch (const DeviceError& error) {
     faults.push_back(error.what());
   }

@@ -53,7 +53,7 @@ class TestDrive {
 
 StraightDrive DriveStraight(const sim::WorldOptions& twin, double way_m) {
   TestDrive drive(twin);
-  // The car drives up to the first mark: the play of the gear then lies to the same side at both marks.
+  // The car drives up to the first mark, so that the backlash of the gear is on the same side at both marks.
   drive.Send(kSpeed_m_s, 0.0);
   drive.Wait(1.0);
   drive.Stand();

@@ -33,7 +33,7 @@ double TimeOf_ms(const Work& work) {
   return Ms(std::chrono::steady_clock::now() - start);
 }
 
-// Along the middle of the corridor, three on each leg, counter-clockwise; of the camera as a body.
+// Poses along the middle of the corridor, three in each leg, counter-clockwise; the camera as a body.
 std::vector<sim::BodyMotion> Drive() {
   std::vector<sim::BodyMotion> motions;
   for (const double turn_rad : {0.0, 0.5, 1.0, 1.5}) {
@@ -66,7 +66,7 @@ Stage CorridorWith(const std::string& actor) {
                     .actors = {{.name = actor, .model = ActorFile(actor), .path = {{0, 0, 0}}}}});
 }
 
-// Ahead of the camera, on the floor, crossing from the right to the left.
+// A path on the floor ahead of the camera, crossing from right to left.
 void PutActor(const Stage& stage, const std::string& actor, const sim::BodyMotion& camera, sim::BodyMotions& bodies) {
   const int body = mj_name2id(stage.model.get(), mjOBJ_BODY, ("actor_" + actor).c_str());
   const Pose T_camera_actor(Eigen::Translation3d(kActorAhead_m, 0.0, -kHeight_m) *
@@ -112,7 +112,7 @@ CameraBench::Color BenchColor(const Stage& stage, const mjData* data, int frames
       12.0};
 }
 
-// One ray a pixel and sub-ray of a 64 x 48 camera with 3 x 3.
+// One ray per pixel and sub-ray of a 64 x 48 camera with 3 x 3 sub-rays.
 void BenchRays(const Stage& stage, mjData* data, CameraBench& bench) {
   const CameraModel lens = ReadDepthCameraSheet(CameraFile("pmd_3k_s")).camera;
   std::vector<double> ours_ms, theirs_ms;

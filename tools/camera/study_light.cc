@@ -10,7 +10,7 @@
 namespace merlin::study {
 namespace {
 
-// Two walls at a right angle. Their edge lies on the optical axis, which halves the angle.
+// Two walls at a right angle. Their common edge lies on the optical axis, which bisects the angle.
 struct Corner {
   double distance_m;
 
@@ -42,7 +42,8 @@ Eigen::Vector3d RayBody(const CameraModel& camera, double u, double v) {
   return BodyOptical().linear() * camera.Ray(u, v);
 }
 
-// One bounce: the lamp at the lens lights the field of view evenly; each point it meets lights the other wall.
+// One bounce: the lamp at the lens lights the field of view uniformly, and each point that it hits lights the other
+// wall.
 double Bulge_m(const StudyCamera& camera, const Corner& corner, double albedo, double u, double v) {
   const CameraModel& lens = camera.sheet.camera;
   const Corner::Point p = corner.Meet(RayBody(lens, u, v));
@@ -126,7 +127,7 @@ Figure Scatter(const StudyCamera& of) {
       Phasor mean = 0.0;
       for (int v = 0; v < lens.height; ++v)
         for (int u = 0; u < lens.width; ++u) mean += facing(u, v) / static_cast<double>(lens.width * lens.height);
-      // The Gaussian part stays among equals here; the even part brings the picture's mean.
+      // In this area the Gaussian part changes nothing; the uniform part adds the mean of the image.
       const double even = kShare * camera.errors.scatter_flat, range_m = wall.distance_m / lens.Ray(column, row).z();
       const Phasor sum = (1.0 - even) * facing(column, row) + even * mean;
       law.Add(share, 1e3 * RangeOf_m(camera, std::arg(sum * std::polar(1.0, -Phase_rad(camera, range_m)))));

@@ -1,4 +1,4 @@
-// Pixels that see more than one surface: at an edge, and through a pane.
+// Studies of pixels that see more than one surface: at an edge, and through a pane.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace merlin::study {
 namespace {
 
-constexpr double kEdgeTurn_rad = 0.32175;  // atan(1/3): the nine sub-rays meet the edge one after the other
+constexpr double kEdgeTurn_rad = 0.32175;  // atan(1/3): the edge passes the nine sub-rays one after the other
 
 Phasor Return(const StudyCamera& camera, double amplitude, double range_m) {
   return std::polar(amplitude / (range_m * range_m), Phase_rad(camera, range_m));
@@ -21,7 +21,7 @@ double RangeOfSum_m(const StudyCamera& camera, const Phasor& sum) {
   return RangeOf_m(camera, phase < 0.0 ? phase + 2.0 * std::numbers::pi : phase);
 }
 
-// Share of a square of unit edge that lies below an edge line: turned, and shifted along its normal from the middle.
+// Share of a unit square that lies below an edge: a line that is rotated, and shifted along its normal from the middle.
 double CoveredShare(double shift) {
   constexpr int kGrid = 200;
   int covered = 0;
@@ -33,7 +33,7 @@ double CoveredShare(double shift) {
   return static_cast<double>(covered) / (kGrid * kGrid);
 }
 
-// A line that jumps by more than half the unambiguous range is broken there.
+// Interrupts a line where it jumps by more than half the unambiguous range.
 void AddUnbroken(Series& line, double x, double y, double jump) {
   if (!line.y.empty() && std::abs(line.y.back() - y) > jump) line.Add(x, std::nan(""));
   line.Add(x, y);
@@ -60,7 +60,7 @@ Figure Flying(const StudyCamera& of) {
       amplitude.Add(a, std::abs(sum) / std::abs(near));
     }
     for (const double shift : Steps(-0.64, 0.64, 41)) {
-      // The near half plane, turned about the axis, its edge this share of a pixel from the middle.
+      // The near half plane, rotated about the axis; its edge is this share of a pixel from the middle.
       const double edge_m = shift * kNear_m / camera.sheet.camera.fx_px - kHalf_m;
       const Stage stage = BuildStage(fmt::format("<geom type='box' size='.0005 {0} {0}' pos='{1} {2} {3}' euler='{4} 0 "
                                                  "0'/><geom type='box' size='.05 30 30' pos='{5} 0 0'/>",
@@ -112,7 +112,7 @@ Figure Glass(const StudyCamera& of) {
     law.Add(angle_deg, RangeOfSum_m(camera, sum));
     pass.Add(angle_deg, std::abs(sum) * kWall_m * kWall_m / kAlbedo);
   }
-  for (const double angle_deg : Steps(8.0, 80.0, 25)) {  // nearer to the normal the lamp's mirror image glares
+  for (const double angle_deg : Steps(8.0, 80.0, 25)) {  // the lamp's mirror image glares below 8 degrees
     const double turn_rad = angle_deg * degree;
     const Stage stage = BuildStage(
         fmt::format("<geom type='box' size='.003 3 3' pos='{} {} 0' euler='0 0 {}'/><geom type='box' size='.05 20 20' "

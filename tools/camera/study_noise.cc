@@ -1,4 +1,4 @@
-// What noise does to range, and what decides how much of it there is.
+// Studies of range noise, and of what determines it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace merlin::study {
 namespace {
 
-constexpr int kPatch = 16, kFrames = 40;  // 10,240 samples a dot: one sigma of it is 0.7 %
+constexpr int kPatch = 16, kFrames = 40;  // 10,240 samples per dot, with a standard error of 0.7 %
 constexpr double kWall_m = 10.0;          // where the wall stands; the camera moves
 
 StudyCamera Patch(StudyCamera camera, double integration_s) {
@@ -84,7 +84,8 @@ Figure Integration(const StudyCamera& of) {
       const double signal_e = Signal_e(camera, target.albedo, 1.0, target.distance_m);
       const bool fits = FullestTap_e(camera, signal_e) <= of.sheet.full_well_e;
       law.Add(t * 1e6, fits ? 1e3 * SigmaLaw_m(camera, signal_e, 0.0) : std::nan(""));
-      // The fullest tap depends on the phase: its largest is (1 + C) / 2, at this distance max |cos|, |sin| of that.
+      // The fullest tap depends on the phase. It holds up to (1 + C) / 2; at this distance, with max |cos|, |sin| of
+      // the phase.
       const double phase = Phase_rad(camera, target.distance_m);
       const double modulation = camera.sheet.Contrast(camera.settings.frequency_hz) *
                                 std::max(std::abs(std::cos(phase)), std::abs(std::sin(phase)));

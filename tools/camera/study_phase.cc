@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFarWall_m = 12.0;
 
-// Measured less true range at this distance from the wall.
+// Measured minus true range at this distance from the wall.
 double Error_m(const StudyCamera& camera, const sim::TofEffects& effects, Stage& wall, double distance_m,
                double speed_away_m_s) {
   wall.T_world_optical.translation().x() = kFarWall_m - distance_m;
@@ -28,7 +28,7 @@ Figure Wiggling(const StudyCamera& of) {
   Series law{.name = "closed form", .color = 0};
   Series raw{.name = "before calibration", .dots = true, .color = 0},
       rest{.name = "after calibration", .dots = true, .color = 1};
-  // Of the odd harmonics four samples leave -(a3 - a5) sin(4 phi), to first order.
+  // Four samples leave -(a3 - a5) sin(4 phi) of the odd harmonics, to first order.
   const double size_rad = camera.errors.harmonic_3 - camera.errors.harmonic_5;
   for (const double d : Steps(0.02, wrap_m, 300))
     law.Add(d, -1e3 * RangeOf_m(camera, size_rad * std::sin(4.0 * Phase_rad(camera, d))));
@@ -42,8 +42,8 @@ Figure Wiggling(const StudyCamera& of) {
           {{.x = {"distance [m]"}, .y = {"measured less true range [mm]"}, .series = {law, raw, rest}}}};
 }
 
-// What four sub-frames of a wall that moves away add up to: each sees its own phase, and its own light, ~ 1 / d^2. Far
-// away, where the light hardly changes, the error is (v Dt / 2) cos 2 phi.
+// The sum of four sub-frames of a wall that moves away: each sub-frame has its own phase and its own light, ~ 1 / d^2.
+// Far away, where the light hardly changes, the error is (v Dt / 2) cos 2 phi.
 double MovingError_m(const StudyCamera& camera, double range_m, double speed_m_s, double step_s) {
   double D[4];
   for (int k = 0; k < 4; ++k) {

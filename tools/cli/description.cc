@@ -22,7 +22,7 @@ std::string_view TakeLine(std::string_view& text) {
   return Trimmed(line);
 }
 
-// Without the marks that only draw a line around it: "# ---", "## Title ##".
+// Removes marks that only form a frame: "# ---", "## Title ##".
 std::string_view WithoutFrame(std::string_view line) {
   constexpr std::string_view kFrame = "#*=-~_ ";
   if (line.find_first_not_of(kFrame) == std::string_view::npos) return "";
@@ -30,14 +30,14 @@ std::string_view WithoutFrame(std::string_view line) {
   return line.substr(0, line.find_last_not_of("#* ") + 1);
 }
 
-// Appends a line of the comment. False: the paragraph has ended.
+// Appends a line of the comment. False if the paragraph has ended.
 bool Append(std::string& paragraph, std::string_view line) {
   if (line.empty()) return paragraph.empty();
   paragraph.append(paragraph.empty() ? "" : " ").append(line);
   return true;
 }
 
-// The first paragraph of the '#' lines that a YAML file begins with.
+// The first paragraph of the '#' lines at the start of a YAML file.
 std::string YamlParagraph(std::string_view text) {
   std::string paragraph;
   while (!text.empty()) {
@@ -51,7 +51,7 @@ std::string YamlParagraph(std::string_view text) {
   return paragraph;
 }
 
-// The first paragraph of the comment that an XML file begins with, before its root element or just in it.
+// The first paragraph of the comment at the start of an XML file, before its root element or directly inside it.
 std::string XmlParagraph(std::string_view text) {
   constexpr std::string_view kOpen = "<!--", kClose = "-->";
   bool in_root = false;
@@ -70,7 +70,7 @@ std::string XmlParagraph(std::string_view text) {
   return paragraph;
 }
 
-// Whether the full stop behind a word shortens it: "e.g.", "No.", "Dr.".
+// Whether the full stop after a word marks an abbreviation: "e.g.", "No.", "Dr.".
 bool IsShortened(std::string_view word) {
   constexpr std::string_view kShortened[] = {"approx", "bzw", "ca", "cf", "Dr", "Eq",   "Fig", "incl", "inkl",
                                              "Mr",     "Mrs", "Ms", "No", "Nr", "Prof", "St",  "vs"};
@@ -80,7 +80,7 @@ bool IsShortened(std::string_view word) {
          std::ranges::find(kShortened, word) != std::end(kShortened);
 }
 
-// The length of the text to the end of the sentence that ends with this mark; none: it ends none ("2.0", "No. 5").
+// The length of the text up to the end of the sentence, if this mark ends it; none otherwise ("2.0", "No. 5").
 std::optional<std::size_t> SentenceEnd(std::string_view text, std::size_t mark) {
   const std::size_t end = std::min(text.find_first_not_of(".!?\"')", mark), text.size());
   if (end == text.size()) return end;
@@ -88,7 +88,7 @@ std::optional<std::size_t> SentenceEnd(std::string_view text, std::size_t mark) 
   if (text[mark] != '.') return end;
   const std::size_t word = text.rfind(' ', mark) + 1;  // 0 where there is no blank before it
   const auto next = static_cast<unsigned char>(text[std::min(text.find_first_not_of(" (\"'", end), text.size() - 1)]);
-  // One letter is an initial ("z. B."), or a unit behind its number ("10 m").
+  // A single letter is an initial ("z. B."), or a unit after its number ("10 m").
   const bool initial = mark - word < 2 && (word < 2 || !std::isdigit(static_cast<unsigned char>(text[word - 2])));
   const bool goes_on =
       std::islower(next) || std::isdigit(next) || initial || IsShortened(text.substr(word, mark - word));

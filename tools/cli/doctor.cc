@@ -29,7 +29,7 @@ struct Models {
   bool Complete() const { return car && materials && scenarios > 0 && rooms > 0 && cameras > 0; }
 };
 
-// models/<name>/<name>.urdf, of whatever name.
+// models/<name>/<name>.urdf, for any name.
 bool HasCar(const fs::path& home) {
   std::error_code unreadable;
   for (const fs::directory_entry& entry : fs::directory_iterator(home / "models", unreadable))

@@ -15,7 +15,7 @@ std::atomic<bool> interrupted{false};
 
 namespace {
 
-// The first Ctrl-C ends the run in good order, the second one ends the program at once.
+// The first Ctrl-C ends the run in good order; the second one ends the program at once.
 void OnInterrupt(int) {
   if (!interrupted.exchange(true)) return;
   RestoreTerminal();
@@ -59,8 +59,8 @@ int main(int argc, char** argv) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGHUP, &action, nullptr);
-  signal(SIGPIPE, SIG_IGN);  // a reader of our output that goes away must not stop the car
-  signal(SIGXFSZ, SIG_IGN);  // a file that may not grow must not, either: the write reports it
+  signal(SIGPIPE, SIG_IGN);  // the car must not stop because the reader of our output has gone
+  signal(SIGXFSZ, SIG_IGN);  // nor because a file cannot grow: the write reports it
   try {
     const int exit_code = merlin::cli::Main(argc, argv);
     if (std::fflush(stdout) != 0) throw merlin::MachineError("standard output cannot be written");

@@ -62,7 +62,7 @@ Pose ReadGuess(const std::string& text) {
     return guess;
   }
   guess.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(n.data());
-  // People copy rounded numbers.
+  // Numbers that people copy are rounded.
   const Eigen::Matrix3d R = guess.linear();
   if ((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() > 1e-2 || R.determinant() < 0.0 ||
       guess.matrix().row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0))
@@ -137,7 +137,7 @@ std::string Json(const AlignResult& r, const Clouds& clouds, double time_ms) {
 }
 
 std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
-  // With enough digits to move a point that is 1e9 m away correctly.
+  // Enough digits for a point that is 1e9 m away.
   std::string text = "T_target_source\n";
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) text += fmt::format(" {:20.15f}", r.T_target_source.matrix()(i, j));
@@ -158,7 +158,7 @@ std::string Text(const AlignResult& r, const Clouds& clouds, double time_ms) {
                             clouds.thin.target.size(), thinned, r.iterations, time_ms);
 }
 
-// The whole source, in the target's frame.
+// The complete source in the target's frame.
 void WriteAligned(const std::string& out, const CloudFile& source, const Pose& T_target_source) {
   std::vector<Eigen::Vector3d> positions = source.cloud.positions;
   for (Eigen::Vector3d& position : positions) position = T_target_source * position;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kUsualColumns = 80;
 
-// The C library's table of widths, whatever the user's locale; below 0 for control characters.
+// Widths from the C library's table, independent of the user's locale; negative for control characters.
 int ColumnsOf(char32_t code) {
   static const locale_t utf8 = newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
   if (code < 0x20 || code == 0x7F) return -1;
@@ -90,11 +90,11 @@ std::vector<std::string> Wrap(std::string_view text, int columns) {
 ProgressLine::ProgressLine() : on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
-  if (on_terminal_) std::fputs("\r\033[K", stderr);  // a terminal may be gone: nothing may be thrown here
+  if (on_terminal_) std::fputs("\r\033[K", stderr);  // the terminal may be gone, and a destructor must not throw
 }
 
 void ProgressLine::Show(std::string_view text) {
-  // One column stays free: some terminals go to the next line as soon as the last one is filled.
+  // One column stays free, because some terminals move to the next line as soon as the last column is filled.
   if (on_terminal_)
     fmt::print(stderr, "\r\033[K{}", Cut(text, std::max(0, TerminalColumns(STDERR_FILENO) - 1)));
   else

@@ -16,7 +16,7 @@ constexpr std::initializer_list<const char*> kX{"x", "points:0", "points_0", "ea
 constexpr std::initializer_list<const char*> kY{"y", "points:1", "points_1", "northing"};
 constexpr std::initializer_list<const char*> kZ{"z", "points:2", "points_2", "elevation"};
 
-// In lower case, without metres as a unit: "X [m]", "x(m)" and "x_m" are x.
+// In lower case and without a unit of metres: "X [m]", "x(m)" and "x_m" become x.
 std::string Plain(std::string_view name) {
   std::string plain(name);
   std::ranges::transform(plain, plain.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -25,7 +25,7 @@ std::string Plain(std::string_view name) {
   return std::string(cloud_text::Trim(plain));
 }
 
-// The column of the first of these names that is there.
+// The column of the first of these names that exists.
 std::optional<std::size_t> Find(const std::vector<std::string>& names, std::initializer_list<const char*> wanted,
                                 const std::string& where) {
   for (const std::string name : wanted) {

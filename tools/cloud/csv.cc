@@ -21,7 +21,7 @@ void Split(char separator, std::string_view line, std::vector<std::string_view>&
   std::ranges::transform(fields, fields.begin(), WithoutQuotes);
 }
 
-// "1,5": a number to whom a comma is what the point is to others.
+// A number with a decimal comma, such as "1,5".
 std::optional<double> ToNumberWithComma(std::string_view text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos || text.find('.') != std::string_view::npos) return std::nullopt;
@@ -31,8 +31,8 @@ std::optional<double> ToNumberWithComma(std::string_view text) {
   return ToNumber<double>(with_point);
 }
 
-// What separates the fields: a semicolon, tabs, commas, or (' ') blanks of any kind. Tabs do where they part the line
-// in three or more, and commas do not where each word between blanks is a number, some with a decimal comma.
+// The character that separates the fields: a semicolon, a tab, a comma, or ' ' for any blanks. Tabs separate if they
+// split the line into three or more. Commas do not if every word between blanks is a number, some with a decimal comma.
 char SeparatorOf(std::string_view line) {
   if (line.find(';') != std::string_view::npos) return ';';
   std::vector<std::string_view> fields;
@@ -66,7 +66,7 @@ class CsvReader {
         ReadRemark(text);
       } else if (!IsCount(text)) {
         if (!columns_ && ReadHeader(*line)) continue;
-        // A tab behind the last cell separates one that is empty; so does one before the first, if there is a header.
+        // A tab after the last cell separates an empty one; so does one before the first, if there is a header.
         const std::string_view row = names_line_ != 0 ? *line : line->substr(line->find(text.front()));
         if (!columns_) Begin(row);
         ++rows_;
@@ -86,7 +86,8 @@ class CsvReader {
  private:
   std::string Where() const { return name_ + ":" + std::to_string(line_); }
 
-  // "//X Y Z" of CloudCompare, "# x y z" of numpy: perhaps the columns' names. Whether they are shows the first point.
+  // "//X Y Z" of CloudCompare, "# x y z" of numpy may be the names of the columns. The first point shows whether they
+  // are.
   void ReadRemark(std::string_view text) {
     if (columns_ || !names_.empty()) return;
     text = Trim(text.substr(std::min(text.find_first_not_of("#/%"), text.size())));
@@ -95,7 +96,7 @@ class CsvReader {
     if (HaveCoordinates(names)) remark_names_ = names;
   }
 
-  // A line of one whole number before the points, or before more of them, is their number (.pts, .xyz).
+  // A line with a single whole number, before the points or between them, is a count of points (.pts, .xyz).
   bool IsCount(std::string_view text) {
     if (declared_ ? rows_ != *declared_ || !columns_ : columns_.has_value()) return false;
     const auto count = ToNumber<std::size_t>(text);
@@ -103,20 +104,20 @@ class CsvReader {
     return count.has_value();
   }
 
-  // Whether the line gives the columns' names.
+  // Whether the line has the names of the columns.
   bool ReadHeader(std::string_view text) {
     if (!names_.empty()) return false;
     std::vector<std::string_view> names;
     Split(SeparatorOf(text), text, names);
     const auto first = std::ranges::find_if_not(names, &std::string_view::empty);
     if (first == names.end() || ToNumber<double>(*first) || ToNumberWithComma(*first)) return false;
-    const Columns sound(names, Where());  // or thrown
+    const Columns sound(names, Where());  // throws if the names are not valid
     names_ = names;
     names_line_ = line_;
     return true;
   }
 
-  // At the first point.
+  // Called at the first point.
   void Begin(std::string_view text) {
     separator_ = SeparatorOf(text);
     Split(separator_, text, fields_);

@@ -19,13 +19,13 @@ using namespace cloud_text;
 
 constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
 
-// PCL's colour: the bytes 0 (or alpha), red, green, blue of a 4-byte number from the highest down, in a field rgb or
-// rgba.
+// PCL's packed colour: in a field rgb or rgba a 4-byte number, whose bytes from the highest are 0 (or alpha), red,
+// green, blue.
 struct PackedColour {
   std::size_t column = 0;
-  bool as_float = false;  // the row holds the float that has these bits, not the number
+  bool as_float = false;  // the row holds a float with these bits instead of the number
 
-  // Into the row's last three values.
+  // Unpacks it into the last three values of the row.
   void Unpack(std::vector<double>& row) const {
     const double value = row[column], most = as_float ? std::numeric_limits<float>::max() : 4294967295.0;
     std::uint32_t bits = 0;
@@ -36,12 +36,12 @@ struct PackedColour {
   }
 };
 
-// The values of a point. A field of COUNT n is n of them, all but the first without a name.
+// The values of a point. A field with COUNT n has n values, of which only the first has a name.
 struct Values {
-  std::vector<std::string_view> names;  // of the header's words
+  std::vector<std::string_view> names;  // refer to the words of the header
   std::vector<Scalar> types;
-  std::vector<std::size_t> field_bytes;  // of each field, all its values together
-  std::optional<PackedColour> colour{};  // then three names more, of the colours
+  std::vector<std::size_t> field_bytes;  // of all values of each field together
+  std::optional<PackedColour> colour{};  // adds three names, of the colours
 };
 
 struct PcdHeader {
@@ -79,7 +79,7 @@ PcdHeader ReadPcdHeader(std::string_view bytes, const std::string& name) {
   throw InputError(name, "the header does not end", "a line DATA");
 }
 
-// The words of an entry, of the given number (0: any but none).
+// The words of an entry, which must be `count` of them (0: any number but none).
 const std::vector<std::string>& Words(const PcdHeader& header, const char* key, std::size_t count,
                                       const std::string& name) {
   const auto entry = header.entries.find(key);
@@ -206,8 +206,8 @@ void ReadBinary(BinaryReader reader, Values values, std::size_t points, const st
   }
 }
 
-// DATA binary_compressed: the sizes of what comes, compressed and not, then the points' fields in LZF: all points'
-// first field, all points' second, and so on. Gives the bytes as DATA binary has them, point by point.
+// DATA binary_compressed: the compressed and the original size, then the fields in LZF: the first field of all points,
+// the second of all points, and so on. Returns the bytes in the order of DATA binary, point by point.
 std::string Decompressed(BinaryReader reader, std::string_view rest, const PcdHeader& header, const Values& values,
                          std::size_t points, const std::string& name, CloudFile& file) {
   constexpr std::size_t kHead_bytes = 8;

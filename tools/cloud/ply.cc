@@ -17,7 +17,7 @@ using namespace cloud_text;
 struct Property {
   std::string name;
   Scalar type = Scalar::kFloat;
-  std::optional<Scalar> count_type{};  // of a list
+  std::optional<Scalar> count_type{};  // only of a list
 };
 
 struct Element {
@@ -62,7 +62,7 @@ Element ReadElement(const std::vector<std::string_view>& words, const std::strin
   return {std::string(words[1]), where, *count};
 }
 
-// False at its end.
+// False at the end of the header.
 bool ReadHeaderLine(const std::vector<std::string_view>& words, const std::string& where, Header& header) {
   if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return true;
   if (words[0] == "end_header") return false;
@@ -71,7 +71,7 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, const std::strin
     if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian")
       throw InputError(where, "no such format", "ascii, binary_little_endian or binary_big_endian", Quoted(words[1]));
   } else if (words[0] == "element") {
-    header.elements.emplace_back();  // also where the line is refused: the properties after it are its own
+    header.elements.emplace_back();  // also if this line is rejected, because the properties after it belong to it
     header.elements.back() = ReadElement(words, where);
   } else if (words[0] == "property" && !header.elements.empty()) {
     header.elements.back().properties.push_back(ReadProperty(words, where));
@@ -103,21 +103,21 @@ Header ReadHeader(std::string_view bytes, const std::string& name) {
   throw InputError(name, "the header does not end", "end_header");
 }
 
-// Gives the rows of the elements, one after the other: a value for each property, NaN for a list.
+// Reads the rows of the elements one after the other: one value per property, NaN for a list.
 class Rows {
  public:
   virtual ~Rows() = default;
-  virtual std::size_t Left() const = 0;                           // bytes
-  virtual std::size_t Least(const Property& property) const = 0;  // bytes it takes
+  virtual std::size_t Left() const = 0;                           // bytes left
+  virtual std::size_t Least(const Property& property) const = 0;  // least number of bytes that it takes
   virtual void Read(const Element& element, std::vector<double>& row) = 0;
-  virtual bool CanGoOn() const = 0;  // with the next row, after one that was refused
-  virtual std::size_t Finish() = 0;  // bytes behind the data, for which the format has no use
+  virtual bool CanGoOn() const = 0;  // whether reading can continue with the next row after one that was rejected
+  virtual std::size_t Finish() = 0;  // number of bytes after the data, which the format does not use
 };
 
 class TextRows : public Rows {
  public:
   TextRows(std::string_view data, const Header& header) : lines_(data), header_(header) {}
-  std::size_t Left() const override { return lines_.Rest().size() + 1; }  // the last line may lack its end
+  std::size_t Left() const override { return lines_.Rest().size() + 1; }  // the last line may have no line end
   std::size_t Least(const Property&) const override { return 2; }
 
   void Read(const Element& element, std::vector<double>& row) override {
@@ -192,7 +192,7 @@ class BinaryRows : public Rows {
   BinaryReader reader_;
 };
 
-// What the header claims must fit into the file before anything is made for it.
+// The file must be large enough for what the header claims, before memory is reserved for it.
 void CheckCount(const Element& element, const Rows& rows) {
   std::size_t least = 0;
   for (const Property& property : element.properties) least += rows.Least(property);

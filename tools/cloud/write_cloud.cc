@@ -11,7 +11,7 @@
 namespace merlin {
 namespace {
 
-static_assert(std::endian::native == std::endian::little);  // numbers are copied as they are
+static_assert(std::endian::native == std::endian::little);  // the bytes of numbers are copied
 
 constexpr double kFloatError_m_max = 0.5e-4;
 constexpr Rgb kGrey{200, 200, 200};
@@ -51,7 +51,7 @@ std::string ToPly(std::span<const Eigen::Vector3d> positions, std::span<const Rg
   return bytes;
 }
 
-// PCL's rgb: a 4-byte number of the bytes 0, red, green, blue from the highest down.
+// PCL's rgb: a 4-byte number, whose bytes from the highest are 0, red, green, blue.
 std::string ToPcd(std::span<const Eigen::Vector3d> positions, std::span<const Rgb> rgb) {
   const bool floats = FloatsSuffice(positions), colored = !rgb.empty();
   std::string bytes = fmt::format(

@@ -17,7 +17,7 @@ namespace {
 constexpr char kRoom[] = "room_7x10";
 constexpr double kBenchSpeed_m_s = 0.5, kBenchSteering_rad = 0.2;
 
-// Drives to and fro on an arc, so that the wheels roll, steer and brake, and the car hits nothing.
+// Drives back and forth on an arc, so that the wheels roll, steer and brake, and the car hits nothing.
 void Drive(sim::World& world) {
   const double side = world.Now() / std::chrono::milliseconds(800) % 2 == 0 ? 1.0 : -1.0;
   world.drive().Send(

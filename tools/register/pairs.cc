@@ -11,11 +11,11 @@ namespace merlin {
 namespace {
 
 constexpr double kPi = std::numbers::pi, kNone = std::numeric_limits<double>::infinity();
-constexpr int kBeams = 64, kTurns = 1500;  // directions of a scan: about a fifth of them meet nothing
+constexpr int kBeams = 64, kTurns = 1500;  // directions of a scan, of which about a fifth hit nothing
 constexpr std::size_t kPoints = 70'000;
 constexpr double kRangeNoise_m = 0.02, kRangeMin_m = 1.0;
 
-// Random numbers that are the same bits everywhere; the distributions of the standard library are not.
+// Random numbers with the same bits everywhere, unlike the distributions of the standard library.
 class Random {
  public:
   explicit Random(std::uint32_t seed) : bits_(seed) {}
@@ -32,7 +32,7 @@ struct Ray {
   Eigen::Vector3d origin, direction;  // of length 1
 };
 
-// Upright, from the ground: a house, or the walls around everything, which are seen from inside.
+// Upright on the ground: a house, or the outer walls, which are seen from inside.
 struct Box {
   Eigen::Vector2d center;
   double yaw_rad;
@@ -47,7 +47,7 @@ struct Sphere {  // a crown: a ray enters it somewhere
   double radius_m;
 };
 
-// The first distance along the ray, or kNone.
+// The nearest distance along the ray, or kNone.
 double Hit(const Ray& ray, const Box& box) {
   const Eigen::Matrix3d R = Eigen::AngleAxisd(-box.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const Eigen::Vector3d o = R * (ray.origin - Eigen::Vector3d(box.center.x(), box.center.y(), box.half_size.z()));
@@ -60,7 +60,7 @@ double Hit(const Ray& ray, const Box& box) {
   }
   if (enter > leave || leave < 0.0) return kNone;
   if (enter > 0.0) return enter;
-  return (o + leave * d).z() < box.half_size.z() - 1e-9 ? leave : kNone;  // open above
+  return (o + leave * d).z() < box.half_size.z() - 1e-9 ? leave : kNone;  // open at the top
 }
 
 double Hit(const Ray& ray, const Cylinder& cylinder) {
@@ -76,7 +76,7 @@ double Hit(const Ray& ray, const Sphere& sphere, Random& random) {
   const Eigen::Vector3d o = ray.origin - sphere.center;
   const double b = o.dot(ray.direction), root = b * b - (o.squaredNorm() - sphere.radius_m * sphere.radius_m);
   if (root < 0.0) return kNone;
-  const double depth_m = -1.5 * std::log(random.Uniform(0.0, 1.0));  // leaves at random: 1.5 m deep in the mean
+  const double depth_m = -1.5 * std::log(random.Uniform(0.0, 1.0));  // the ray ends at a random leaf: 1.5 m on average
   return depth_m < 2.0 * std::sqrt(root) ? -b - std::sqrt(root) + depth_m : kNone;
 }
 
@@ -107,7 +107,7 @@ struct Place {
   }
 };
 
-// In the lidar's frame; evenly thinned to kPoints.
+// In the lidar's frame; thinned evenly to kPoints.
 Cloud Scan(const Place& place, const Pose& T_world_lidar, Random& random) {
   std::vector<Eigen::Vector3d> all;
   for (int turn = 0; turn < kTurns; ++turn)
@@ -127,7 +127,7 @@ Cloud Scan(const Place& place, const Pose& T_world_lidar, Random& random) {
 
 constexpr int kWidth = 640, kHeight = 480;
 
-// 16 bit big-endian, 1/1000 m along the optical axis, of a camera with f 518, 519 and c 325.5, 253.5 pixels.
+// 16-bit big-endian values of 1/1000 m along the optical axis, from a camera with f 518, 519 and c 325.5, 253.5 pixels.
 Cloud ReadFrame(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string magic;

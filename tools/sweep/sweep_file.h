@@ -3,9 +3,9 @@
 //   scenario: corridor_loop          # the base: a name in scenarios/, or a path (also beside this file)
 //   lap_m: 87                        # optional: duration_s becomes 1.5 times the lap's length over pilot.speed_m_s
 //   seeds: 1-5                       # or a list: 1,4,7-9
-//   set: {sensors.color: null}       # optional: settings of all rows, as `merlin run --set`
-//   limits: {pass_share_min: 0.8}    # optional: of every row; a row's own limit goes before
-//   all: {pass_share_min: 0.95}      # optional: of all runs together
+//   set: {sensors.color: null}       # optional: settings for all rows, as in `merlin run --set`
+//   limits: {pass_share_min: 0.8}    # optional: for every row; a row's own limit takes precedence
+//   all: {pass_share_min: 0.95}      # optional: for all runs together
 //   rows:
 //     - {name: S3, set: {sensors.depth.camera: pmd_s3}}
 //     - {name: wet, scenario: corridor_wet, limits: {ate_median_m_max: 0.1}}

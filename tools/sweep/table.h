@@ -39,8 +39,8 @@ struct SweepTable {
 SweepTable MakeTable(const std::string& name, const Sweep& sweep, std::span<const SweepOutcome> outcomes);
 
 std::string ToMarkdown(const SweepTable& table);
-std::string ToCsv(const SweepTable& table);                                         // a line a row
-std::string RunsToCsv(const Sweep& sweep, std::span<const SweepOutcome> outcomes);  // a line a run
-std::string ToPng(const SweepTable& table);                                         // a row a row; ATE logarithmic
+std::string ToCsv(const SweepTable& table);                                         // one line per row
+std::string RunsToCsv(const Sweep& sweep, std::span<const SweepOutcome> outcomes);  // one line per run
+std::string ToPng(const SweepTable& table);                                         // ATE axis logarithmic
 
 }  // namespace merlin
