@@ -22,7 +22,7 @@ TEST(EmulateCli, RefusesFilesThatItMayNotWriteAndTasksThatItCannotDo) {
   std::ofstream(folder.path() / "mine.yaml") << "car: merlin\n";
   std::filesystem::create_directory(folder.path() / "folder");
   ExpectRefusal("corridor_short", "--hardware-file", folder.path());
-  ExpectRefusal("corridor_short --hardware-file mine.yaml", "no emulator wrote it", folder.path());
+  ExpectRefusal("corridor_short --hardware-file mine.yaml", "was not written by merlin emulate", folder.path());
   ExpectRefusal("corridor_short --hardware-file folder", "--hardware-file folder: cannot be used", folder.path());
   ExpectRefusal("corridor_short --hardware-file none/car.yaml", "--hardware-file none/car.yaml", folder.path());
   ExpectRefusal("corridor_short --hardware-file car.yaml --out folder", "--out folder", folder.path());
