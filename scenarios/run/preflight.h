@@ -3,10 +3,10 @@
 // when waited for.
 //
 //   rate              within 30 % of the device's own rate (a busy machine loses some frames; half the rate is a
-//   fault);
-//                     a device without a known rate must deliver at least one measurement
-//   battery           0.9 to 1.3 of the car's nominal voltage: ten NiMH cells of 12 V have 10 V when empty, 15 V when
-//   full roll, pitch       within 5 degrees of level, on average
+//                     fault); a device without a known rate must deliver at least one measurement
+//   battery           0.9 to 1.3 of the car's nominal voltage: ten NiMH cells of 12 V have 10 V when empty and 15 V
+//                     when full
+//   roll, pitch       within 5 degrees of level, on average
 //   range image       at least one valid pixel, and not the same range in all of them
 //   colour picture    not the same colour in all pixels
 //   steering, current finite numbers
