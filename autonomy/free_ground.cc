@@ -36,6 +36,7 @@ std::vector<Eigen::Vector2d> EdgesOf(const Rectangle& r, double apart_m) {
 std::optional<double> FreeGround_m(const OccupancyGrid& grid, const Footprint& footprint, const Pose& T_map_base,
                                    std::span<const Eigen::Vector2d> path_base, const BackConfig& config) {
   const Rectangle here{footprint.front_m, footprint.rear_m, footprint.half_width_m};
+  const Rectangle beside{footprint.front_m, footprint.rear_m, footprint.half_width_m + OccupancyGrid::kBeside_m};
   const Rectangle swept{footprint.front_m, footprint.rear_m + config.stop_gap_m,
                         footprint.half_width_m + config.margin_m};
   // Half a cell apart, no cell can hide between two points. The edges suffice: what they enclose was below the car before,
@@ -47,7 +48,8 @@ std::optional<double> FreeGround_m(const OccupancyGrid& grid, const Footprint& f
       const Eigen::Vector2d p = T_base_then * edge;
       if (here.Contains(p)) return true;
       const Eigen::Vector3d p_map = T_map_base * Eigen::Vector3d(p.x(), p.y(), 0.0);
-      return grid.At(Eigen::Vector2d(p_map.head<2>())) == OccupancyGrid::Cell::kFree;
+      const OccupancyGrid::Cell cell = grid.At(Eigen::Vector2d(p_map.head<2>()));
+      return cell == OccupancyGrid::Cell::kFree || (cell == OccupancyGrid::Cell::kUnknown && beside.Contains(p));
     });
   };
   double free_m = 0.0;

@@ -1,8 +1,10 @@
 // How far the car can back. No sensor looks behind the car, so that it backs only over ground that the occupancy grid
-// knows to be free: what was seen to be free when the car last looked there.
+// knows to be free: what was seen to be free when the car last looked there, and where the car itself has driven
+// (OccupancyGrid::Cover). What comes there unseen is not noticed; what is seen there stops the car.
 //
 // The footprint of the car is swept along the path. Every grid cell that it enters must be free; an occupied or unknown
-// cell ends the free ground. Ground below the car is free, since the car stands on it.
+// cell ends the free ground. Ground below the car is free, since the car stands on it. So is unknown ground close beside
+// it, as the grid will have it with the next key frame.
 //
 //        +--------+---------------+
 //        |  gap   |  footprint    |   driven to the left; the gap and the margins on both sides must be free, too

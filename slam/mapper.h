@@ -26,7 +26,11 @@ namespace merlin {
 class Mapper {
  public:
   Mapper(const SlamConfig& config, const Footprint& footprint)
-      : config_(config), footprint_(footprint), local_(config.local), grid_(config.occupancy), closer_(config.loop) {}
+      : config_(config),
+        footprint_(footprint),
+        local_(config.local),
+        grid_(config.occupancy, footprint),
+        closer_(config.loop) {}
 
   // Adds a frame at a pose that can be trusted; path_m: distance driven until then; yaw_rad: its heading in the map, if
   // it has one. Returns the pose as the loops correct it that this frame closes.
@@ -46,7 +50,7 @@ class Mapper {
   const std::vector<GraphEdge>& loop_edges() const { return closer_.edges(); }
 
   VoxelMap BuildMap() const;
-  OccupancyGrid BuildOccupancy() const { return GridOf(keyframes_, config_.occupancy); }
+  OccupancyGrid BuildOccupancy() const { return GridOf(keyframes_, config_.occupancy, footprint_); }
 
  private:
   void Keep(const Observation& observation, const Pose& T_map_base, std::optional<double> yaw_rad);

@@ -6,13 +6,14 @@
 namespace merlin {
 namespace {
 
-void Enter(OccupancyGrid& grid, const Keyframe& keyframe) {
+void Enter(OccupancyGrid& grid, const Keyframe& keyframe, const Footprint& footprint) {
   grid.Insert(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
+  grid.Cover(footprint, keyframe.T_map_base);
 }
 
 }  // namespace
 
-void KeyframeGrid::Add(const Keyframe& keyframe) { Enter(grid_, keyframe); }
+void KeyframeGrid::Add(const Keyframe& keyframe) { Enter(grid_, keyframe, footprint_); }
 
 void KeyframeGrid::Restart(std::span<const Keyframe> at_once) {
   grid_ = GridOf(at_once, config_);
@@ -29,15 +30,15 @@ void KeyframeGrid::Follow(std::span<const Keyframe> keyframes) {
   }
   if (!next_) return;
   const std::size_t until = std::min(entered_ + share_, keyframes.size());
-  for (; entered_ < until; ++entered_) Enter(*next_, keyframes[entered_]);
+  for (; entered_ < until; ++entered_) Enter(*next_, keyframes[entered_], footprint_);
   if (entered_ < keyframes.size()) return;
   grid_ = std::move(*next_);
   next_.reset();
 }
 
-OccupancyGrid GridOf(std::span<const Keyframe> keyframes, const OccupancyConfig& config) {
+OccupancyGrid GridOf(std::span<const Keyframe> keyframes, const OccupancyConfig& config, const Footprint& footprint) {
   OccupancyGrid grid(config);
-  for (const Keyframe& keyframe : keyframes) Enter(grid, keyframe);
+  for (const Keyframe& keyframe : keyframes) Enter(grid, keyframe, footprint);
   return grid;
 }
 

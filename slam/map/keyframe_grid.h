@@ -23,7 +23,9 @@ class KeyframeGrid {
   // again before, it is completed first and then made once more, so that twice as many calls may pass.
   static constexpr std::size_t kFrames = 40;
 
-  explicit KeyframeGrid(const OccupancyConfig& config) : config_(config), grid_(config) {}
+  // footprint: the car's. The ground that it covers at a key frame is known to be free.
+  explicit KeyframeGrid(const OccupancyConfig& config, const Footprint& footprint = {})
+      : config_(config), footprint_(footprint), grid_(config) {}
 
   // Adds a new key frame at once. At most one before each call of Follow.
   void Add(const Keyframe& keyframe);
@@ -39,6 +41,7 @@ class KeyframeGrid {
 
  private:
   OccupancyConfig config_;
+  Footprint footprint_;
   OccupancyGrid grid_;
   std::optional<OccupancyGrid> next_;    // with the first entered_ key frames
   std::size_t entered_ = 0, share_ = 0;  // share_: key frames added per call of Follow
@@ -46,6 +49,7 @@ class KeyframeGrid {
 };
 
 // The same grid, made at once.
-OccupancyGrid GridOf(std::span<const Keyframe> keyframes, const OccupancyConfig& config);
+OccupancyGrid GridOf(std::span<const Keyframe> keyframes, const OccupancyConfig& config,
+                     const Footprint& footprint = {});
 
 }  // namespace merlin

@@ -16,6 +16,10 @@ constexpr double kFarthest_m = 100.0;  // longer ranges are wrong, and would mak
 
 }  // namespace
 
+Eigen::Vector2i OccupancyGrid::CellOf(const Eigen::Vector2d& point_map) const {
+  return (point_map / config_.cell_m).array().floor().cast<int>();
+}
+
 void OccupancyGrid::GrowTo(int x, int y) {
   if (width_ > 0 && x >= x0_ && x < x0_ + width_ && y >= y0_ && y < y0_ + height_) return;
   const int margin = std::max(64, std::max(width_, height_) / 2);
@@ -51,22 +55,38 @@ void OccupancyGrid::FreeAlong(int x0, int y0, int x1, int y1) {  // Bresenham, t
 
 void OccupancyGrid::Insert(std::span<const Point> points_base, const Eigen::Vector3f& camera_base,
                            const Pose& T_map_base) {
-  const auto cell_of = [this](const Eigen::Vector3d& p) {
-    return Eigen::Vector2i((p.head<2>() / config_.cell_m).array().floor().cast<int>());
-  };
   const Eigen::Vector3d camera_map = T_map_base * camera_base.cast<double>();
-  const Eigen::Vector2i from = cell_of(camera_map);
+  const Eigen::Vector2i from = CellOf(camera_map.head<2>());
   GrowTo(from.x(), from.y());
   const double steepest = std::tan(config_.sweep_rad);
   for (const Point& point : points_base) {
     const Eigen::Vector3d p_map = T_map_base * point.position.cast<double>();
     if (!((p_map - camera_map).norm() < kFarthest_m)) continue;  // not finite either
     const Eigen::Vector3d ray = p_map - camera_map;
-    const Eigen::Vector2i to = cell_of(p_map);
+    const Eigen::Vector2i to = CellOf(p_map.head<2>());
     GrowTo(to.x(), to.y());
     if (std::abs(ray.z()) <= steepest * ray.head<2>().norm()) FreeAlong(from.x(), from.y(), to.x(), to.y());
     if (p_map.z() >= config_.height_min_m && p_map.z() <= config_.height_max_m) Add(to.x(), to.y(), kHit);
   }
+}
+
+void OccupancyGrid::Cover(const Footprint& footprint, const Pose& T_map_base) {
+  if (!(footprint.front_m + footprint.rear_m > 0.0 && footprint.half_width_m > 0.0)) return;
+  const double half_width_m = footprint.half_width_m + kBeside_m;
+  const double reach_m = std::hypot(std::max(footprint.front_m, footprint.rear_m), half_width_m);
+  const Eigen::Vector2d middle = T_map_base.translation().head<2>();
+  const Eigen::Vector2i low = CellOf(middle.array() - reach_m), high = CellOf(middle.array() + reach_m);
+  GrowTo(low.x(), low.y());
+  GrowTo(high.x(), high.y());
+  const Pose T_base_map = T_map_base.inverse();
+  for (int y = low.y(); y <= high.y(); ++y)
+    for (int x = low.x(); x <= high.x(); ++x) {
+      const Eigen::Vector2d cell = (Eigen::Array2d(x, y) + 0.5) * config_.cell_m;
+      const Eigen::Vector3d p_base = T_base_map * Eigen::Vector3d(cell.x(), cell.y(), T_map_base.translation().z());
+      const bool below =
+          p_base.x() <= footprint.front_m && p_base.x() >= -footprint.rear_m && std::abs(p_base.y()) <= half_width_m;
+      if (below && At(x - x0_, y - y0_) == Cell::kUnknown) Add(x, y, kPass);
+    }
 }
 
 OccupancyGrid::Cell OccupancyGrid::At(int column, int row) const {
@@ -76,7 +96,7 @@ OccupancyGrid::Cell OccupancyGrid::At(int column, int row) const {
 }
 
 OccupancyGrid::Cell OccupancyGrid::At(const Eigen::Vector2d& point_map) const {
-  const Eigen::Vector2i cell = (point_map / config_.cell_m).array().floor().cast<int>();
+  const Eigen::Vector2i cell = CellOf(point_map);
   return At(cell.x() - x0_, cell.y() - y0_);
 }
 

@@ -1,6 +1,6 @@
 // Free and occupied ground, seen from above: a grid of log odds (H. Moravec and A. Elfes, "High resolution maps from
 // wide angle sonar", ICRA 1985). The cells along a ray become freer, the cell at its end more occupied where the point
-// is as high as an obstacle. The grid grows as needed. Map frame.
+// is as high as an obstacle. What no ray met is free where the car itself has been. The grid grows as needed. Map frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +10,7 @@
 
 #include "perception/observation.h"
 #include "robot/base/config.h"
+#include "robot/types/footprint.h"
 #include "robot/types/se3.h"
 
 namespace merlin {
@@ -36,6 +37,11 @@ class OccupancyGrid {
   explicit OccupancyGrid(const OccupancyConfig& config) : config_(config) {}
   // camera_base: where the rays of the points begin.
   void Insert(std::span<const Point> points_base, const Eigen::Vector3f& camera_base, const Pose& T_map_base);
+  // The car stands here: unknown cells become free whose middle is below it, or up to kBeside_m beside it, since key
+  // frames are apart and poses err. Known cells stay as they are, and what is seen later counts as anywhere. An empty
+  // footprint covers nothing.
+  static constexpr double kBeside_m = 0.1;
+  void Cover(const Footprint& footprint, const Pose& T_map_base);
 
   Cell At(const Eigen::Vector2d& point_map) const;  // unknown outside
   int width() const { return width_; }
@@ -45,6 +51,7 @@ class OccupancyGrid {
   Cell At(int column, int row) const;  // row 0 at the lowest y
 
  private:
+  Eigen::Vector2i CellOf(const Eigen::Vector2d& point_map) const;
   void GrowTo(int x, int y);
   void Add(int x, int y, int log_odds);
   void FreeAlong(int x0, int y0, int x1, int y1);

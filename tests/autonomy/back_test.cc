@@ -127,5 +127,43 @@ TEST(Backing, NeedsNoPath) {
   EXPECT_DOUBLE_EQ(end.fastest_m_s, 0.1);
 }
 
+// Drives a circle to the left, which the map knows only by the car's own body, key frame by key frame. Gives the way back
+// along the circle, and on beyond its start at the origin.
+std::vector<Eigen::Vector2d> DriveUnseen(OccupancyGrid& grid, ToyCar& car) {
+  constexpr double kSteering_rad = 0.08;  // tighter, and the gap behind the car would reach out of where it drove
+  for (int i = 0; i < 40; ++i) {
+    if (i % 2 == 0) grid.Cover(FootprintOf(Car()), car.T_map_base());
+    car.Drive({.speed_m_s = 1.0, .steering_rad = kSteering_rad}, 0.05);
+  }
+  std::vector<Eigen::Vector2d> path;
+  for (ToyCar back = car; path.size() < 60; back.Drive({.speed_m_s = -1.0, .steering_rad = kSteering_rad}, 0.05))
+    path.emplace_back(back.x_m, back.y_m);
+  return path;
+}
+
+TEST(Backing, BacksOverThePathThatItDroveAndNeverSaw) {
+  OccupancyGrid grid({});
+  ToyCar car;
+  const std::vector<Eigen::Vector2d> path = DriveUnseen(grid, car);
+  const End end = Back(grid, Backing(path), car);
+  EXPECT_EQ(end.decision.activity, Activity::kWaitsForFreeGround);
+  EXPECT_GE(end.car.x_m, 0.05) << "behind its start it knows nothing";
+  EXPECT_LE(end.car.x_m, 0.35) << "it backs as far as it can";
+  EXPECT_EQ(Back(OccupancyGrid({}), Backing(path), car).fastest_m_s, 0.0) << "without that knowledge";
+}
+
+TEST(Backing, StopsOnItsOwnPathBeforeWhatCameThereLater) {
+  OccupancyGrid grid({});
+  ToyCar car;
+  const std::vector<Eigen::Vector2d> path = DriveUnseen(grid, car);
+  const Eigen::Vector2d came = path[30];  // half a metre after the start
+  SeeOccupied(grid, came.x(), came.y());
+  const End end = Back(grid, Backing(path), car);
+  EXPECT_EQ(end.decision.activity, Activity::kWaitsForFreeGround);
+  const double behind_m = -(end.car.T_map_base().inverse() * Eigen::Vector3d(came.x(), came.y(), 0.0)).x();
+  EXPECT_GE(behind_m - kRear_m, 0.05);
+  EXPECT_LE(behind_m - kRear_m, 0.4) << "it backs as far as it can";
+}
+
 }  // namespace
 }  // namespace merlin

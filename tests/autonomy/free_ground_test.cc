@@ -98,5 +98,14 @@ TEST(FreeGround, TakesTheGroundBelowTheCarForFree) {
   EXPECT_FALSE(Free_m(grid, StraightBack(0.02)));
 }
 
+TEST(FreeGround, NeedsNotHaveSeenWhatIsBesideTheStandingCar) {
+  OccupancyGrid grid({});
+  SeeFree(grid, -3.0, -0.40, -1.0, 1.0);  // all beside it but the last bit is unknown
+  EXPECT_FALSE(Free_m(grid, StraightBack(2.0)));
+  EXPECT_TRUE(Free_m(grid, ArcAhead(Car(), 0.4, -0.8))) << "the front would swing over unknown ground";
+  SeeOccupied(grid, 0.2, 0.17);
+  EXPECT_EQ(Free_m(grid, StraightBack(2.0)), 0.0) << "it is too near to back";
+}
+
 }  // namespace
 }  // namespace merlin

@@ -10,6 +10,8 @@
 namespace merlin {
 namespace {
 
+constexpr Footprint kCar{.front_m = 0.45, .rear_m = 0.1, .half_width_m = 0.15, .height_m = 0.3};
+
 // A few points of walls all around, another few for each index.
 Keyframe KeyframeAt(std::size_t index, const Pose& T_map_base) {
   std::mt19937 random(static_cast<std::uint32_t>(index));
@@ -37,8 +39,10 @@ std::vector<double> CellsOf(const OccupancyGrid& grid) {
 // Enters one key frame after the other directly into a grid.
 std::vector<double> MadeAtOnce(const std::vector<Keyframe>& keyframes) {
   OccupancyGrid grid({});
-  for (const Keyframe& keyframe : keyframes)
+  for (const Keyframe& keyframe : keyframes) {
     grid.Insert(keyframe.points_base, keyframe.camera_base, keyframe.T_map_base);
+    grid.Cover(kCar, keyframe.T_map_base);
+  }
   return CellsOf(grid);
 }
 
@@ -62,7 +66,7 @@ struct GridDrive {
     return frames;
   }
   std::vector<Keyframe> keyframes;
-  KeyframeGrid grid{OccupancyConfig{}};
+  KeyframeGrid grid{OccupancyConfig{}, kCar};
 };
 
 TEST(KeyframeGrid, EntersANewKeyFrameAtOnce) {
@@ -85,7 +89,7 @@ TEST(KeyframeGrid, IsAsIfMadeAtOnceAfterFortyFramesAtMost) {
       EXPECT_LE(drive.FramesUntilRenewed(drives, 0.1), KeyframeGrid::kFrames)
           << count << " key frames, drives: " << drives;
       EXPECT_EQ(CellsOf(drive.grid.grid()), MadeAtOnce(drive.keyframes)) << count << " key frames, drives: " << drives;
-      EXPECT_EQ(CellsOf(GridOf(drive.keyframes, {})), MadeAtOnce(drive.keyframes));
+      EXPECT_EQ(CellsOf(GridOf(drive.keyframes, {}, kCar)), MadeAtOnce(drive.keyframes));
     }
 }
 

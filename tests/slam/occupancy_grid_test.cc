@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace merlin {
 namespace {
@@ -61,6 +63,43 @@ TEST(OccupancyGrid, GrowsAndKeepsWhatItKnew) {
   EXPECT_EQ(grid.At({-38.98, 30.02}), Cell::kOccupied);
   EXPECT_EQ(grid.At({41.02, -29.98}), Cell::kOccupied);
   EXPECT_EQ(grid.At({0.5, 0.02}), Cell::kFree);
+}
+
+constexpr Footprint kBody{.front_m = 0.45, .rear_m = 0.1, .half_width_m = 0.15, .height_m = 0.3};
+
+TEST(OccupancyGrid, KnowsThatTheGroundBelowTheCarIsFree) {
+  for (const double yaw_rad : {0.0, 0.7, std::numbers::pi, -1.6}) {
+    const Pose T_map_base = FromXyYaw(-0.31, 0.42, yaw_rad);
+    OccupancyGrid grid({});
+    grid.Cover(kBody, T_map_base);
+    for (double x = -1.0; x < 1.0; x += 0.01)
+      for (double y = -1.0; y < 1.0; y += 0.01) {
+        const Cell cell = grid.At(Eigen::Vector2d((T_map_base * Eigen::Vector3d(x, y, 0.0)).head<2>()));
+        const double outside_m = std::max({x - kBody.front_m, -kBody.rear_m - x, std::abs(y) - kBody.half_width_m});
+        if (std::abs(outside_m - 0.05) <= 0.09) continue;  // a cell counts by its middle, at most 0.036 m away
+        EXPECT_EQ(cell, outside_m < 0.0 ? Cell::kFree : Cell::kUnknown) << x << ' ' << y;
+      }
+  }
+}
+
+TEST(OccupancyGrid, BelievesWhatItSawBelowTheCarAndWhatItSeesThereLater) {
+  const Eigen::Vector2d seen_before(0.22, 0.02), seen_after(0.32, 0.02);
+  const auto occupied = [](const Eigen::Vector2d& p) {
+    return std::vector<Eigen::Vector3f>{{static_cast<float>(p.x()), static_cast<float>(p.y()), 0.35f}};
+  };
+  OccupancyGrid grid({});
+  Look(grid, occupied(seen_before), FromXyYaw(0.0, 0.0, 0.0));
+  for (int i = 0; i < 100; ++i) grid.Cover(kBody, Pose::Identity());
+  EXPECT_EQ(grid.At(seen_before), Cell::kOccupied);
+  EXPECT_EQ(grid.At(seen_after), Cell::kFree);
+  Look(grid, occupied(seen_after));
+  EXPECT_EQ(grid.At(seen_after), Cell::kOccupied) << "one look counts for more than standing there for long";
+}
+
+TEST(OccupancyGrid, IsNotCoveredByACarWithoutExtent) {
+  OccupancyGrid grid({});
+  grid.Cover({}, Pose::Identity());
+  EXPECT_EQ(grid.width(), 0);
 }
 
 }  // namespace

@@ -20,6 +20,11 @@ constexpr char kHall[] = R"(<geom name="floor" type="plane" size="20 20 1"/>
   <geom type="box" size="0.1 4 1" pos="7.6 -2.25 1"/> <geom type="box" size="0.1 4 1" pos="-1.1 -2.25 1"/>
   <geom type="box" size="6 0.1 1" pos="4.5 1.6 1"/> <geom type="box" size="6 0.1 1" pos="4.5 -6.1 1"/>)";
 
+// The same, but the wall ahead of the start stands nearer: its face is at x = 4.3.
+constexpr char kShortHall[] = R"(<geom name="floor" type="plane" size="20 20 1"/>
+  <geom name="wall" type="box" size="0.1 4 1" pos="4.4 -2.25 1"/> <geom type="box" size="0.1 4 1" pos="-1.1 -2.25 1"/>
+  <geom type="box" size="3 0.1 1" pos="1.5 1.6 1"/> <geom type="box" size="3 0.1 1" pos="1.5 -6.1 1"/>)";
+
 using Path = std::vector<Eigen::Vector2d>;
 
 // Continues a path straight to a point.
@@ -27,6 +32,13 @@ void AddLine(Path& path, double x, double y) {
   const Eigen::Vector2d from = path.back(), step = Eigen::Vector2d(x, y) - from;
   const int parts = static_cast<int>(std::ceil(step.norm() / 0.05));
   for (int i = 1; i <= parts; ++i) path.push_back(from + step * i / parts);
+}
+
+// Continues a path that leads along x by a half circle to the right.
+void AddHalfCircle(Path& path, double radius_m) {
+  const Eigen::Vector2d centre = path.back() - Eigen::Vector2d(0.0, radius_m);
+  for (double angle = 0.05 / radius_m; angle < std::numbers::pi; angle += 0.05 / radius_m)
+    path.push_back(centre + radius_m * Eigen::Vector2d(std::sin(angle), std::cos(angle)));
 }
 
 // Drives one path to its end, then backs along another.
@@ -49,11 +61,22 @@ class ThereAndBack {
   bool backs_ = false;
 };
 
+// Infinite in a room without a geom of this name.
+double DistanceToGeom_m(const sim::World& world, const char* name) {
+  double distance_m = HUGE_VAL;
+  const int other = mj_name2id(world.model(), mjOBJ_GEOM, name);
+  for (int geom = 0; other >= 0 && geom < world.model()->ngeom; ++geom)
+    if (world.IsCarGeom(geom))
+      distance_m = std::min(
+          distance_m, mj_geomDistance(world.model(), const_cast<mjData*>(world.data()), geom, other, 10.0, nullptr));
+  return distance_m;
+}
+
 class Backing : public ::testing::Test {
  protected:
   // The twin's car, driven by its own perception, map and pilot.
-  void Drive(const Path& there, const Path& back, double seconds) {
-    const sim::TemporaryFile room("room.xml", sim::Room(kHall));
+  void Drive(const Path& there, const Path& back, double seconds, const char* hall = kHall) {
+    const sim::TemporaryFile room("room.xml", sim::Room(hall));
     TwinOptions options;
     options.world.room = room.path();
     options.world.car = sim::Merlin();
@@ -94,12 +117,17 @@ class Backing : public ::testing::Test {
     if (decision_.command.speed_m_s >= 0.0 && backed_m_ == 0.0) turned_back_ = here_;
     if (decision_.command.speed_m_s < 0.0) backed_m_ = (here_ - turned_back_).norm();
     fastest_back_m_s_ = std::max(fastest_back_m_s_, -world.Speed_m_s());
+    wall_m_ = DistanceToGeom_m(world, "wall");
+    nearest_wall_m_ = std::min(nearest_wall_m_, wall_m_);
+    touches_ += world.CarTouches().size();
   }
 
   Decision decision_;
   Eigen::Vector2d here_{0, 0}, turned_back_{0, 0};  // position, and where it began to back
   double backed_m_ = 0.0;
   double fastest_back_m_s_ = 0.0;
+  double wall_m_ = HUGE_VAL, nearest_wall_m_ = HUGE_VAL;  // true distance of the wall that has a name
+  std::size_t touches_ = 0;
 };
 
 TEST_F(Backing, BacksHalfAMetreOverGroundItHasSeen) {
@@ -122,8 +150,26 @@ TEST_F(Backing, StopsWhereItHasSeenNoGround) {
   EXPECT_EQ(decision_.activity, Activity::kWaitsForFreeGround) << decision_.doing;
   EXPECT_EQ(decision_.command.speed_m_s, 0.0);
   EXPECT_GT(backed_m_, 0.5);
-  // Behind its start it has seen nothing: its rear stays ahead of where its front was.
+  // Behind its start it knows nothing: its rear stays ahead of where it was then.
   EXPECT_GT(here_.x() - FootprintOf(sim::Merlin()).rear_m, 0.0);
+}
+
+// It turns around before the wall, then backs towards it: over ground that it saw before it turned, and over the path that
+// it drove and never looked at.
+TEST_F(Backing, StopsBeforeAWallBehindIt) {
+  Path there{{0.0, 0.0}};
+  AddLine(there, 2.2, 0.0);
+  AddHalfCircle(there, 1.0);
+  AddLine(there, 1.5, -2.0);
+  Path back{{1.5, -2.0}};
+  AddLine(back, 8.0, -2.0);
+  Drive(there, back, 40.0, kShortHall);
+  EXPECT_EQ(decision_.activity, Activity::kWaitsForFreeGround) << decision_.doing;
+  EXPECT_LT(turned_back_.x(), 2.0) << "it came from beyond the turn, and backs over all of it";
+  EXPECT_GT(backed_m_, 2.0);
+  EXPECT_GE(nearest_wall_m_, 0.05);
+  EXPECT_LT(wall_m_, 0.3) << "it backs as far as it can";
+  EXPECT_EQ(touches_, 0u);
 }
 
 }  // namespace
