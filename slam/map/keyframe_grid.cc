@@ -16,7 +16,7 @@ void Enter(OccupancyGrid& grid, const Keyframe& keyframe, const Footprint& footp
 void KeyframeGrid::Add(const Keyframe& keyframe) { Enter(grid_, keyframe, footprint_); }
 
 void KeyframeGrid::Restart(std::span<const Keyframe> at_once) {
-  grid_ = GridOf(at_once, config_);
+  grid_ = GridOf(at_once, config_, footprint_);
   next_.reset();
   moved_ = true;
 }
