@@ -7,31 +7,19 @@
 #include <string>
 #include <vector>
 
-#include "robot/description/description.h"
 #include "robot/emulated/emulated_robot.h"
 #include "robot/hardware/hardware_robot.h"
-#include "tests/robot/hal/conformance.h"
-#include "tests/sim/world/car_world.h"
+#include "tests/robot/hal/merlin_before_wall.h"
 #include "tests/support/cable.h"
 #include "tests/support/temporary_folder.h"
 
 namespace merlin {
 namespace {
 
-constexpr double kWall_m = 7.0;
-
-constexpr char kRoom[] = R"(<geom name="floor" type="plane" size="20 20 1"/>
-  <geom name="wall" type="box" size="0.1 5 2" pos="7.1 0 2"/>)";
-
-TwinOptions Options(const sim::TemporaryFile& room) {
-  TwinOptions options;
-  options.world.room = room.path();
-  options.world.car = sim::Merlin();
-  options.world.car.pan->moves = true;
-  options.depth.sheet = ReadDepthCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/pmd_3k_s.yaml");
-  options.compass = TwinOptions::Compass{};
+// The simulation would not keep real time under the thread sanitizer with all errors and 20 frames a second.
+TwinOptions RealTimeOptions(const sim::TemporaryFile& room) {
+  TwinOptions options = Options(room);
 #ifdef __SANITIZE_THREAD__
-  // The simulation would not keep real time there with all errors and 20 frames a second.
   options.depth.effects = sim::kIdealTof;
   options.depth.rate_hz = 5.0;
 #endif
@@ -48,11 +36,10 @@ HardwareConfig DevicesOf(const EmulatedRobot& emulated, const std::filesystem::p
   return config;
 }
 
-class RiggedEmulation final : public Rigged {
+class RiggedEmulation final : public MerlinBeforeWall {
  public:
   RiggedEmulation()
-      : room_("room.xml", sim::Room(kRoom)),
-        options_(Options(room_)),
+      : options_(MerlinIn(room_)),
         clock_({.watchdog_s = 10.0}, Time::max()),
         emulated_(options_, sockets_.path(), clock_),
         drive_cable_(emulated_.drive_port(), EmulatedRobot::kDriveBaud, sockets_.path() / "drive") {
@@ -68,10 +55,6 @@ class RiggedEmulation final : public Rigged {
     while (robot.drive->Poll() || robot.compass->Poll() || robot.depth->Poll()) continue;  // what came meanwhile
   }
   Robot robot() override { return hardware_->robot(); }
-  CarDescription car() override { return sim::Merlin(); }
-  double wall_ahead_m() override { return kWall_m; }
-  double start_yaw_rad() override { return 0.0; }
-  double compass_sigma_rad() override { return sim::CompassConfig{}.yaw_noise_rad; }
   Duration slack() override { return std::chrono::milliseconds(150); }
   bool Unplug() override {
     drive_cable_.Pull();
@@ -80,7 +63,6 @@ class RiggedEmulation final : public Rigged {
   void PlugIn() override { drive_cable_.PlugIn(); }
 
  private:
-  sim::TemporaryFile room_;
   TemporaryFolder sockets_;
   TwinOptions options_;
   RealClock clock_;

@@ -4,26 +4,13 @@
 #include <filesystem>
 
 #include "robot/base/error.h"
-#include "robot/description/description.h"
-#include "robot/twin/twin.h"
-#include "tests/robot/hal/conformance.h"
-#include "tests/sim/world/car_world.h"
+#include "tests/robot/hal/merlin_before_wall.h"
 
 namespace merlin {
 namespace {
 
-constexpr double kWall_m = 7.0;
-
-constexpr char kRoom[] = R"(<geom name="floor" type="plane" size="20 20 1"/>
-  <geom name="wall" type="box" size="0.1 5 2" pos="7.1 0 2"/>)";
-
 TwinOptions Options(const sim::TemporaryFile& room) {
-  TwinOptions options;
-  options.world.room = room.path();
-  options.world.car = sim::Merlin();
-  options.world.car.pan->moves = true;
-  options.depth.sheet = ReadDepthCameraSheet(std::filesystem::path(MERLIN_SOURCE_DIR) / "models/cameras/pmd_3k_s.yaml");
-  options.compass = TwinOptions::Compass{};
+  TwinOptions options = MerlinIn(room);
   options.end = std::chrono::hours(1);
   options.threads = 1;
   return options;
@@ -50,17 +37,12 @@ TwinOptions WithColor(TwinOptions options) {
   return options;
 }
 
-class RiggedTwin final : public Rigged {
+class RiggedTwin final : public MerlinBeforeWall {
  public:
-  RiggedTwin() : room_("room.xml", sim::Room(kRoom)), twin_(WithColor(Options(room_))) {}
+  RiggedTwin() : twin_(WithColor(Options(room_))) {}
   Robot robot() override { return twin_.robot(); }
-  CarDescription car() override { return sim::Merlin(); }
-  double wall_ahead_m() override { return kWall_m; }
-  double start_yaw_rad() override { return 0.0; }
-  double compass_sigma_rad() override { return sim::CompassConfig{}.yaw_noise_rad; }
 
  private:
-  sim::TemporaryFile room_;
   Twin twin_;
 };
 
@@ -71,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(Twin, HalConformance,
 TEST(Twin, GivesTheSameFramesForAnyNumberOfThreads) {
   std::vector<DepthFrame> first;
   for (const int threads : {1, 2, 3}) {
-    const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
+    const sim::TemporaryFile room("room.xml", sim::Room(kRoomWithWall));
     TwinOptions options = Options(room);
     options.threads = threads;
     Twin twin(options);
@@ -93,7 +75,7 @@ TEST(Twin, GivesTheSameFramesForAnyNumberOfThreads) {
 TEST(Twin, GivesTheSameColourForAnyNumberOfThreads) {
   std::vector<ColorFrame> first;
   for (const int threads : {1, 2, 3}) {
-    const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
+    const sim::TemporaryFile room("room.xml", sim::Room(kRoomWithWall));
     TwinOptions options = WithColor(Options(room));
     if (!options.color) GTEST_SKIP() << "no GL";
     options.threads = threads;
@@ -115,7 +97,7 @@ TEST(Twin, GivesTheSameColourForAnyNumberOfThreads) {
 }
 
 TEST(Twin, HasNoPanUnitAndNoTurntableUnlessAskedFor) {
-  const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
+  const sim::TemporaryFile room("room.xml", sim::Room(kRoomWithWall));
   TwinOptions options = Options(room);
   options.world.car.pan->moves = false;
   EXPECT_EQ(Twin(options).robot().pan, nullptr);
@@ -123,7 +105,7 @@ TEST(Twin, HasNoPanUnitAndNoTurntableUnlessAskedFor) {
 }
 
 TEST(Twin, ReportsTheLensItSeesThrough) {
-  const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
+  const sim::TemporaryFile room("room.xml", sim::Room(kRoomWithWall));
   const TwinOptions options = WithColor(Options(room));
   if (!options.color) GTEST_SKIP() << "no GL";
   Twin twin(options);
@@ -133,7 +115,7 @@ TEST(Twin, ReportsTheLensItSeesThrough) {
 
 TEST(Twin, SwitchingTheCompassOffChangesNoDepth) {
   const auto first_frame = [](bool compass) {
-    const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
+    const sim::TemporaryFile room("room.xml", sim::Room(kRoomWithWall));
     TwinOptions options = Options(room);
     if (!compass) options.compass.reset();
     Twin twin(options);
@@ -145,7 +127,7 @@ TEST(Twin, SwitchingTheCompassOffChangesNoDepth) {
 }
 
 TEST(Twin, EndsWhenItsTimeIsOver) {
-  const sim::TemporaryFile room("room.xml", sim::Room(kRoom));
+  const sim::TemporaryFile room("room.xml", sim::Room(kRoomWithWall));
   TwinOptions options = Options(room);
   options.end = std::chrono::milliseconds(100);
   Twin twin(options);
