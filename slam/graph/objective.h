@@ -26,7 +26,7 @@ inline PlanarRotation PlanarRotationIn(Objective objective) {
   return objective == Objective::kA ? PlanarRotation::kChord : PlanarRotation::kAngle;
 }
 
-// The value of the objective at the graph's poses.
+// The value of the objective at the graph's poses; every edge counts in full, robust or not.
 double Evaluate(const PoseGraph& graph, Objective objective);
 
 }  // namespace merlin

@@ -15,7 +15,20 @@ namespace {
 constexpr double kFirstDamping = 1e-12, kDampingFactor = 10.0;  // shares of H's diagonal; guesses
 constexpr double kDampingMax = 1e12;                            // beyond it a step moves no pose
 constexpr double kConvergedDamping = 1e-6;                      // beyond it a small step does not mean convergence
+constexpr double kGraduation = 4.0;                             // of robust_chi2, from one descent to the next; guess
+constexpr int kIterationsAGrade = 2;                            // guess
 constexpr double kFactor_bytes_max = 4e9;
+
+struct Robust {
+  double cost = 0.0, weight = 1.0;  // and the cost's derivative by chi2
+};
+
+// The cost whose derivative is s^2: Agarwal et al. eq. 15 gives s; integrated from phi on.
+Robust ScaledCovariance(double chi2, double phi) {
+  if (chi2 <= phi) return {.cost = chi2};
+  const double s = 2.0 * phi / (phi + chi2);
+  return {.cost = phi * (3.0 * chi2 - phi) / (chi2 + phi), .weight = s * s};
+}
 
 template <class Group>
 class GraphProblem {
@@ -41,25 +54,61 @@ class GraphProblem {
   }
 
   OptimizeResult Solve(const std::atomic<bool>* stop) {
-    OptimizeResult result{.poses = graph_.poses, .objective = Cost(states_)};
+    stop_ = stop;
+    OptimizeResult result;
+    result.poses = graph_.poses;
+    result.objective = Cost(states_);
     if (!std::isfinite(result.objective)) return result;
-    Descend(result, stop);
-    for (std::size_t i = 0; i < states_.size(); ++i)
-      if (free_.row[i] != FreePoses::kFixed) result.poses[i] = Group::ToPose(states_[i]);
-    result.objective = cost_;
+    const std::vector<State> start = states_;
+    Ending end = Descend(config_.iterations_max);
+    if (WorstRobustChi2(end.states) > phi_) {
+      const Ending other = DescendGradually(start);
+      if (other.cost < end.cost) end = other;
+    }
+    for (std::size_t i = 0; i < end.states.size(); ++i)
+      if (free_.row[i] != FreePoses::kFixed) result.poses[i] = Group::ToPose(end.states[i]);
+    for (std::size_t i = 0; i < graph_.edges.size(); ++i)
+      result.edge_weights.push_back(RobustOf(i, Chi2(end.states, i)).weight);
+    result.objective = end.cost;
+    result.converged = end.converged;
+    result.iterations = iterations_;
     return result;
   }
 
  private:
-  void Descend(OptimizeResult& result, const std::atomic<bool>* stop) {
-    cost_ = result.objective;
-    result.converged = free_.count == 0 || graph_.edges.empty();
+  struct Ending {
+    std::vector<State> states;
+    double cost = 0.0;
+    bool converged = false;
+  };
+
+  // Starts at states_.
+  Ending Descend(int iterations) {
+    cost_ = Cost(states_);
+    bool converged = free_.count == 0 || graph_.edges.empty();
     double damping = 0.0;
-    while (result.iterations < config_.iterations_max && !result.converged && !(stop && *stop)) {
-      ++result.iterations;
+    for (; iterations > 0 && !converged && iterations_ < config_.iterations_max && !(stop_ && *stop_); --iterations) {
+      ++iterations_;
       Linearize();
-      if (!Improve(damping, result.converged)) break;
+      if (!Improve(damping, converged)) break;
     }
+    return {.states = states_, .cost = cost_, .converged = converged};
+  }
+
+  // Robust edges hold in full at first, and are let go step by step (A. Blake and A. Zisserman, "Visual reconstruction",
+  // 1987: graduated non-convexity): odometry may have drifted so far that right loops look wrong at the start.
+  Ending DescendGradually(const std::vector<State>& start) {
+    states_ = start;
+    for (phi_ = WorstRobustChi2(start); phi_ > config_.robust_chi2; phi_ /= kGraduation) Descend(kIterationsAGrade);
+    phi_ = config_.robust_chi2;
+    return Descend(config_.iterations_max);
+  }
+
+  double WorstRobustChi2(const std::vector<State>& states) const {
+    double worst = 0.0;
+    for (std::size_t i = 0; i < graph_.edges.size(); ++i)
+      if (graph_.edges[i].robust) worst = std::max(worst, Chi2(states, i));
+    return worst;
   }
 
   static const BlockPattern& Allowed(const BlockPattern& pattern) {
@@ -76,9 +125,13 @@ class GraphProblem {
     return error.dot(information_[i] * error);
   }
 
+  Robust RobustOf(std::size_t i, double chi2) const {
+    return graph_.edges[i].robust ? ScaledCovariance(chi2, phi_) : Robust{.cost = chi2};
+  }
+
   double Cost(const std::vector<State>& states) const {
     double sum = 0.0;
-    for (std::size_t i = 0; i < graph_.edges.size(); ++i) sum += Chi2(states, i);
+    for (std::size_t i = 0; i < graph_.edges.size(); ++i) sum += RobustOf(i, Chi2(states, i)).cost;
     return sum;
   }
 
@@ -92,8 +145,9 @@ class GraphProblem {
       const int from = free_.row[edge.from], to = free_.row[edge.to];
       const auto linear = Group::Linearize(states_[edge.from], states_[edge.to], measured_[i], rotation_);
       const Vector weighted = information_[i] * linear.error;
-      const Matrix H_to = linear.J_to.transpose() * (information_[i] * linear.J_to);
-      const Vector g_to = linear.J_to.transpose() * weighted;
+      const double weight = RobustOf(i, linear.error.dot(weighted)).weight;
+      const Matrix H_to = weight * linear.J_to.transpose() * (information_[i] * linear.J_to);
+      const Vector g_to = weight * linear.J_to.transpose() * weighted;
       const Matrix H_from_to = -linear.adjoint.transpose() * H_to;
       if (to != FreePoses::kFixed) {
         H_.diagonal[to] += H_to;
@@ -154,7 +208,9 @@ class GraphProblem {
   BlockMatrix<kSize> H_;
   BlockCholesky<kSize> solver_;
   Eigen::VectorXd g_;
-  double cost_ = 0.0;
+  double phi_ = config_.robust_chi2, cost_ = 0.0;
+  int iterations_ = 0;
+  const std::atomic<bool>* stop_ = nullptr;
 };
 
 }  // namespace

@@ -17,6 +17,7 @@ struct GraphEdge {
   // frame of `to`; symmetric, positive semidefinite. The rotation is 2 sin(angle / 2) times the axis, as in g2o; for
   // small angles this is the rotation vector. In planar graphs only x, y and yaw count.
   Matrix6d information = Matrix6d::Identity();
+  bool robust = false;  // may be wrong (a loop closure): it loses weight where it contradicts the others
 };
 
 struct PoseGraph {

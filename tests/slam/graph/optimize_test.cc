@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "slam/graph/initial_poses.h"
 #include "tests/slam/graph/random_graph.h"
 
 namespace merlin {
@@ -182,6 +183,93 @@ TEST(Optimize, GivesTheSameBitsAgainAndInAnyThread) {
     EXPECT_EQ(result.objective, here.objective);
     for (std::size_t i = 0; i < graph.poses.size(); ++i) EXPECT_EQ(result.poses[i].matrix(), here.poses[i].matrix());
   }
+}
+
+// Two laps of a square of 10 m by drifting odometry, whose loop closures say the truth to 2 cm and 10 mrad.
+struct Laps {
+  PoseGraph graph;
+  std::vector<Pose> truth;
+};
+
+Laps DriveTwoLaps(RandomGraphs& random) {
+  constexpr std::size_t kLap = 40;
+  Laps laps;
+  laps.truth = {Pose::Identity()};
+  const auto information = [](double sigma_m, double sigma_rad) {
+    Vector6d weights;
+    weights << Eigen::Vector3d::Constant(1.0 / (sigma_m * sigma_m)),
+        Eigen::Vector3d::Constant(1.0 / (sigma_rad * sigma_rad));
+    return Matrix6d(weights.asDiagonal());
+  };
+  const auto measure = [&](std::size_t from, std::size_t to, double sigma_m, double sigma_rad) {
+    laps.graph.edges.push_back(
+        {.from = from,
+         .to = to,
+         .T_from_to = laps.truth[from].inverse() * laps.truth[to] * Exp(random.Tangent(sigma_m, sigma_rad)),
+         .information = information(sigma_m, sigma_rad)});
+  };
+  for (std::size_t i = 1; i <= 2 * kLap; ++i)
+    laps.truth.push_back(laps.truth.back() * FromXyYaw(1.0, 0.0, i % 10 == 0 ? kPi / 2 : 0.0));
+  laps.graph.poses.resize(laps.truth.size(), Pose::Identity());
+  for (std::size_t i = 0; i < 2 * kLap; ++i) measure(i, i + 1, 0.03, 0.01);
+  for (std::size_t i = 0; i <= kLap; i += 8) {
+    measure(i, i + kLap, 0.02, 0.01);
+    laps.graph.edges.back().robust = true;
+  }
+  laps.graph.poses = ChainedPoses(laps.graph);
+  return laps;
+}
+
+double WorstError_m(const std::vector<Pose>& poses, const std::vector<Pose>& truth) {
+  double worst_m = 0.0;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    worst_m = std::max(worst_m, (poses[i].translation() - truth[i].translation()).norm());
+  return worst_m;
+}
+
+TEST(RobustEdges, KeepRightLoopsAndDropAWrongOne) {
+  for (const unsigned seed : {1u, 2u, 10u, 15u, 19u}) {  // of the latter three one descent alone drops a right loop
+    RandomGraphs random(seed);
+    Laps laps = DriveTwoLaps(random);
+    const OptimizeResult right = Optimize(laps.graph, {});
+    EXPECT_TRUE(right.converged);
+    for (std::size_t i = 0; i < laps.graph.edges.size(); ++i) EXPECT_GT(right.edge_weights[i], 0.5) << seed << " " << i;
+    EXPECT_LT(WorstError_m(right.poses, laps.truth), WorstError_m(laps.graph.poses, laps.truth));
+
+    GraphEdge wrong = laps.graph.edges.back();  // two corridors that look alike
+    wrong.from = 5;
+    wrong.to = 5 + 40 + 20;
+    wrong.T_from_to = Pose::Identity();
+    wrong.robust = true;
+    laps.graph.edges.push_back(wrong);
+    const OptimizeResult robust = Optimize(laps.graph, {});
+    EXPECT_LT(robust.edge_weights.back(), 0.01) << seed;
+    for (std::size_t i = 0; i < robust.poses.size(); ++i)
+      EXPECT_LT((robust.poses[i].translation() - right.poses[i].translation()).norm(), 0.1) << seed << " " << i;
+
+    laps.graph.edges.back().robust = false;
+    EXPECT_GT(WorstError_m(Optimize(laps.graph, {}).poses, laps.truth), 3.0) << seed;
+  }
+}
+
+// The cost of a robust edge is the integral of its weight over chi2.
+TEST(RobustEdges, CostWhatTheirWeightSumsUpTo) {
+  double cost = 0.0;
+  constexpr double kStep = 1e-3;
+  OptimizeConfig config{.iterations_max = 0};
+  const auto at = [&config](double chi2) {
+    PoseGraph graph{.poses = {Pose::Identity(), FromXyYaw(std::sqrt(chi2), 0.0, 0.0)},
+                    .edges = {{.from = 0, .to = 1}},
+                    .fixed = {},
+                    .planar = true};
+    graph.edges[0].robust = true;
+    return Optimize(graph, config);
+  };
+  for (double chi2 = 0.0; chi2 < 40.0; chi2 += kStep) cost += kStep * at(chi2 + 0.5 * kStep).edge_weights[0];
+  EXPECT_NEAR(at(40.0).objective, cost, 1e-3);
+  EXPECT_EQ(at(12.5).objective, at(12.5).objective);
+  EXPECT_NEAR(at(12.5).objective, 12.5, 1e-12);
+  EXPECT_NEAR(at(3 * 12.6).edge_weights[0], 0.25, 1e-12);
 }
 
 }  // namespace
