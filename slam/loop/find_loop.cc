@@ -40,7 +40,7 @@ std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const 
 
 // Adds the key frames to a fine map and a coarse one.
 void AddTo(VoxelMap& fine, VoxelMap& coarse, std::span<const Keyframe> keyframes,
-           const std::vector<std::size_t>& indices) {
+           std::span<const std::size_t> indices) {
   std::vector<std::vector<Point>> thin;
   for (const std::size_t i : indices) thin.push_back(Downsample(keyframes[i].points_base, kThin_m));
   std::vector<PlacedPoints> views;
@@ -58,11 +58,8 @@ double ShareMeeting(const VoxelMap& map, std::span<const Point> points_base, con
 
 }  // namespace
 
-std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
-                             const Pose& T_map_base, double path_m, const LoopConfig& config) {
-  const std::vector<std::size_t> former = FormerViews(keyframes, T_map_base, path_m, config);
-  if (former.empty()) return std::nullopt;
-
+PlaceFit FitToViews(std::span<const Keyframe> keyframes, std::span<const std::size_t> views,
+                    std::span<const Point> points_base, const Pose& T_map_base, const LoopConfig& config) {
   PosePrior prior;
   prior.T_map_base = T_map_base;
   Vector6d sigma;
@@ -70,26 +67,37 @@ std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<cons
   prior.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
   // Coarse first: there a point finds its surface from as far away as a voxel's edge.
   VoxelMap coarse({.voxel_m = kCoarse_m}), fine({.voxel_m = kFine_m});
-  AddTo(fine, coarse, keyframes, former);
+  AddTo(fine, coarse, keyframes, views);
   const IcpConfig wide{.iterations_max = kIterations,
                        .step_converged = kStep,
                        .kernel_m = 0.5 * kCoarse_m,
                        .map_sigma_m = 0.1 * kCoarse_m};
   const IcpConfig narrow{.iterations_max = kIterations, .step_converged = kStep};
   const RegisterResult guess = Register(points_base, Eigen::Vector3f::Zero(), coarse, prior, wide);
-  if (guess.inliers < wide.inliers_min) return std::nullopt;  // it need not have converged
-  prior.information /= 4.0;                                   // from here on the shape decides
+  if (guess.inliers < wide.inliers_min) return {};  // it need not have converged
+  prior.information /= 4.0;                         // from here on the shape decides
   const PosePrior refined{guess.T_map_base, Matrix6d(prior.information)};
-  const RegisterResult fit = Register(points_base, Eigen::Vector3f::Zero(), fine, refined, narrow);
-  if (!fit.converged || fit.rms_m > config.rms_max_m) return std::nullopt;
-  const Eigen::Matrix2d covariance_m2 = fit.covariance.topLeftCorner<2, 2>();
-  const double sigma_m =
-      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance_m2).eigenvalues().maxCoeff());
-  const double near = ShareMeeting(coarse, points_base, fit.T_map_base),
-               on = ShareMeeting(fine, points_base, fit.T_map_base);
-  if (sigma_m > config.sigma_max_m || near < config.overlap_min || on < config.on_surface_min * near)
-    return std::nullopt;
-  return Loop{former.front(), fit.T_map_base, fit.covariance, near};
+  PlaceFit result{.fit = Register(points_base, Eigen::Vector3f::Zero(), fine, refined, narrow)};
+  if (!result.fit.converged) return result;
+  const Eigen::Matrix2d covariance_m2 = result.fit.covariance.topLeftCorner<2, 2>();
+  result.sigma_m = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance_m2).eigenvalues().maxCoeff());
+  result.near = ShareMeeting(coarse, points_base, result.fit.T_map_base);
+  result.on_surface = ShareMeeting(fine, points_base, result.fit.T_map_base);
+  return result;
+}
+
+bool Fits(const PlaceFit& fit, const LoopConfig& config) {
+  return fit.fit.converged && fit.fit.rms_m <= config.rms_max_m && fit.near >= config.overlap_min &&
+         fit.on_surface >= config.on_surface_min * fit.near;
+}
+
+std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
+                             const Pose& T_map_base, double path_m, const LoopConfig& config) {
+  const std::vector<std::size_t> former = FormerViews(keyframes, T_map_base, path_m, config);
+  if (former.empty()) return std::nullopt;
+  const PlaceFit fit = FitToViews(keyframes, former, points_base, T_map_base, config);
+  if (!Fits(fit, config) || fit.sigma_m > config.sigma_max_m) return std::nullopt;
+  return Loop{former.front(), fit.fit.T_map_base, fit.fit.covariance, fit.near};
 }
 
 }  // namespace merlin

@@ -75,6 +75,21 @@ struct Loop {
   double overlap = 0.0;                    // share of points near the former map
 };
 
+// How well points fit to what some key frames saw.
+struct PlaceFit {
+  RegisterResult fit;       // the key frames' map is the target
+  double sigma_m = 0.0;     // one sigma of the position, in the direction that is known worst
+  double near = 0.0;        // share of the points near the key frames' map
+  double on_surface = 0.0;  // share of the points on its surfaces
+};
+
+// Registers the points against the map of these key frames, coarsely, then finely. views: indices of key frames.
+// T_map_base: where it starts; converges from some 0.3 m and 0.05 rad away.
+PlaceFit FitToViews(std::span<const Keyframe> keyframes, std::span<const std::size_t> views,
+                    std::span<const Point> points_base, const Pose& T_map_base, const LoopConfig& config);
+// The shapes are the same. Whether they determine the position is another question: see sigma_m.
+bool Fits(const PlaceFit& fit, const LoopConfig& config);
+
 // points_base: the newest points, in the present frame. Nothing where no key frame of an earlier visit sees the place,
 // or the shapes do not fit, or do not determine the position.
 std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<const Point> points_base,

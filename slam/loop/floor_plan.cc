@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -10,13 +11,15 @@
 namespace merlin {
 namespace {
 
-constexpr std::int8_t kWall = 2, kNextToWall = 1, kUnknown = 0, kFree = -1;
-constexpr std::size_t kWallsMin = 30, kWallsMax = 250;  // cells of a piece; the rest of them tells little more
-constexpr std::size_t kMatchesMax = 12;                 // each takes milliseconds to verify
-constexpr double kScoreMin = 0.5;                       // guess
-constexpr double kShareOfBest = 0.75;                   // matches with less of the best one's score are left out; guess
+constexpr std::int8_t kWallCell = 2, kNextToWallCell = 1, kUnknownCell = 0, kFreeCell = -1;
+constexpr std::size_t kWallsMin = 30, kWallsMax = 250;       // cells of a piece; the rest of them tells little more
+constexpr std::size_t kMatchesMax = 12;                      // each takes milliseconds to verify
+constexpr double kScoreMin = 0.5, kScoreMinInRegion = 0.25;  // guesses
+constexpr double kShareOfBest = 0.75;  // matches with less of the best one's score are left out; guess
 constexpr double kApart_m = 0.8, kApart_rad = 0.26;
-constexpr double kCorrelationMin = 0.5;  // share of the best yaw's; yaws with less are left out; guess
+constexpr double kCorrelationMin = 0.5;    // share of the best yaw's within kAround_deg: the walls of one direction...
+constexpr double kCorrelationLeast = 0.1;  // ...may be much longer than those of the other; and of the best; guesses
+constexpr int kAround_deg = 20;
 
 double Radians(int degrees) { return degrees * std::numbers::pi / 180.0; }
 
@@ -35,6 +38,13 @@ std::vector<Eigen::Vector2d> WallsOf(std::span<const Point> points, const Occupa
   for (std::size_t i = 0; i < cells.size(); i += stride)
     walls.emplace_back((cells[i].first + 0.5) * cell_m, (cells[i].second + 0.5) * cell_m);
   return walls;
+}
+
+std::vector<double> YawsIn(const PlanRegion& region) {
+  std::vector<double> yaws_rad;
+  const int reach = static_cast<int>(std::ceil(std::min(region.reach_rad, std::numbers::pi) / Radians(1)));
+  for (int turn = -reach; turn <= reach; ++turn) yaws_rad.push_back(WrapPi(Yaw(region.T_map_base) + Radians(turn)));
+  return yaws_rad;
 }
 
 bool Near(const PlanMatch& a, const PlanMatch& b) {
@@ -61,10 +71,10 @@ FloorPlan::FloorPlan(const OccupancyGrid& grid)
     for (int x = -kPad; x < width_ - kPad; ++x) {
       const Cell cell = grid.At(x, y);
       if (cell == Cell::kOccupied) walls.emplace_back(x * cell_m_, y * cell_m_);
-      levels_[0].push_back(cell == Cell::kOccupied ? kWall
-                           : next_to_wall(x, y)    ? kNextToWall
-                           : cell == Cell::kFree   ? kFree
-                                                   : kUnknown);
+      levels_[0].push_back(cell == Cell::kOccupied ? kWallCell
+                           : next_to_wall(x, y)    ? kNextToWallCell
+                           : cell == Cell::kFree   ? kFreeCell
+                                                   : kUnknownCell);
     }
   spectrum_ = SpectrumOf(walls, cell_m_);
   PoolCells();
@@ -81,13 +91,13 @@ void FloorPlan::PoolCells() {
 }
 
 std::int8_t FloorPlan::At(int level, int x, int y) const {
-  if (x < 0 || x >= width_ || y < 0 || y >= height_) return kUnknown;
+  if (x < 0 || x >= width_ || y < 0 || y >= height_) return kUnknownCell;
   return levels_[level][static_cast<std::size_t>(y) * width_ + x];
 }
 
 bool FloorPlan::IsFree(const Eigen::Vector2d& point_map) const {
   const Eigen::Vector2i cell = ((point_map - origin_m_) / cell_m_).array().floor().cast<int>();
-  return At(0, cell.x(), cell.y()) == kFree;
+  return At(0, cell.x(), cell.y()) == kFreeCell;
 }
 
 // How sharply the walls stand out, seen along each direction: the sum of squares of the histogram of their distances
@@ -117,15 +127,21 @@ std::vector<double> FloorPlan::YawsOf(std::span<const Eigen::Vector2d> walls_bas
   Spectrum correlation{};
   for (int turn = 0; turn < kDirections; ++turn)
     for (int i = 0; i < kDirections; ++i) correlation[turn] += piece[i] * spectrum_[(i + turn) % kDirections];
-  const double least = kCorrelationMin * std::ranges::max(correlation);
+  const double least = kCorrelationLeast * std::ranges::max(correlation);
+  const auto best_around = [&](int turn) {
+    double best = 0.0;
+    for (int i = -kAround_deg; i <= kAround_deg; ++i)
+      best = std::max(best, correlation[(turn + i + kDirections) % kDirections]);
+    return best;
+  };
   std::vector<double> yaws_rad;
   for (int turn = 0; turn < kDirections; ++turn)
-    if (correlation[turn] >= least)
+    if (correlation[turn] >= std::max(least, kCorrelationMin * best_around(turn)))
       yaws_rad.insert(yaws_rad.end(), {Radians(turn), WrapPi(Radians(turn) + std::numbers::pi)});
   return yaws_rad;
 }
 
-int FloorPlan::Score(std::span<const Eigen::Vector2i> cells, const Node& node) const {
+int FloorPlan::Bound(std::span<const Eigen::Vector2i> cells, const Node& node) const {
   int score = 0;
   for (const Eigen::Vector2i& cell : cells) score += At(node.level, node.x + cell.x(), node.y + cell.y());
   return score;
@@ -133,7 +149,7 @@ int FloorPlan::Score(std::span<const Eigen::Vector2i> cells, const Node& node) c
 
 // The best pose of the node, if it is better than `best`; the child with the highest bound first.
 void FloorPlan::Search(std::span<const Eigen::Vector2i> cells, const Node& node, Best& best) const {
-  const int bound = Score(cells, node);
+  const int bound = Bound(cells, node);
   if (bound <= best.score) return;
   if (node.level == 0) {
     best = {node.x, node.y, bound};
@@ -143,27 +159,51 @@ void FloorPlan::Search(std::span<const Eigen::Vector2i> cells, const Node& node,
   std::array<std::pair<int, Node>, 4> children;
   for (int i = 0; i < 4; ++i) {
     const Node child{node.x + (i % 2) * half, node.y + (i / 2) * half, level};
-    children[i] = {Score(cells, child), child};
+    children[i] = {Bound(cells, child), child};
   }
   std::ranges::stable_sort(children, std::greater<>{}, [](const auto& child) { return child.first; });
   for (const auto& [child_bound, child] : children)
     if (child_bound > best.score) Search(cells, child, best);
 }
 
-std::vector<PlanMatch> FloorPlan::Match(std::span<const Point> points_base, const OccupancyConfig& heights) const {
+// Some pose of the node lies in the region.
+bool FloorPlan::Reaches(const PlanRegion& region, const Node& node) const {
+  const Eigen::Vector2d lowest = origin_m_ + cell_m_ * Eigen::Vector2d(node.x, node.y);
+  const Eigen::Vector2d centre = region.T_map_base.translation().head<2>();
+  const Eigen::Vector2d nearest =
+      centre.cwiseMax(lowest).cwiseMin(lowest + Eigen::Vector2d::Constant(cell_m_ * (1 << node.level)));
+  return (nearest - centre).cwiseAbs().maxCoeff() <= region.reach_m;
+}
+
+double FloorPlan::Score(std::span<const Point> points_base, const OccupancyConfig& heights,
+                        const Pose& T_map_base) const {
+  const std::vector<Eigen::Vector2d> walls = WallsOf(points_base, heights, cell_m_);
+  double sum = 0.0;
+  for (const Eigen::Vector2d& wall : walls) {
+    const Eigen::Vector2d p_map = (T_map_base * Eigen::Vector3d(wall.x(), wall.y(), 0.0)).head<2>();
+    const Eigen::Vector2i cell = ((p_map - origin_m_) / cell_m_).array().floor().cast<int>();
+    sum += At(0, cell.x(), cell.y());
+  }
+  return walls.empty() ? 0.0 : sum / static_cast<double>(kWallCell * walls.size());
+}
+
+std::vector<PlanMatch> FloorPlan::Match(std::span<const Point> points_base, const OccupancyConfig& heights,
+                                        const std::optional<PlanRegion>& region) const {
   const std::vector<Eigen::Vector2d> walls = WallsOf(points_base, heights, cell_m_);
   if (walls.size() < kWallsMin) return {};
   std::vector<PlanMatch> matches;
-  const double whole = static_cast<double>(kWall * walls.size());
-  double least = kScoreMin;
-  for (const double yaw_rad : YawsOf(walls)) {
+  const double whole = static_cast<double>(kWallCell * walls.size());
+  double least = region ? kScoreMinInRegion : kScoreMin;
+  for (const double yaw_rad : region ? YawsIn(*region) : YawsOf(walls)) {
     std::vector<Eigen::Vector2i> cells;
     for (const Eigen::Vector2d& wall : walls)
-      cells.push_back((Eigen::Rotation2Dd(yaw_rad) * wall / cell_m_).array().floor().cast<int>());
+      cells.push_back(((Eigen::Rotation2Dd(yaw_rad) * wall / cell_m_).array() + 0.5).floor().cast<int>());
     for (int y = 0; y < height_; y += kPad)
       for (int x = 0; x < width_; x += kPad) {
+        const Node node{x, y, kLevels - 1};
+        if (region && !Reaches(*region, node)) continue;
         Best best{.score = static_cast<int>(least * whole)};
-        Search(cells, {x, y, kLevels - 1}, best);
+        Search(cells, node, best);
         const double score = best.score / whole;
         if (score <= least) continue;
         const Eigen::Vector2d p = origin_m_ + cell_m_ * Eigen::Vector2d(best.x + 0.5, best.y + 0.5);

@@ -7,7 +7,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,14 +24,23 @@ struct PlanMatch {
   double score = 0.0;
 };
 
+// Where to search: poses no farther than reach_m along x and y, and than reach_rad, from this one.
+struct PlanRegion {
+  Pose T_map_base = Pose::Identity();
+  double reach_m = 0.0, reach_rad = 0.0;
+};
+
 class FloorPlan {
  public:
   explicit FloorPlan(const OccupancyGrid& grid);
 
   // Poses at which the points of the piece lie on the map's walls, best first, at most 12. No two are within 0.8 m and
   // 15 deg. heights: points outside of height_min_m and height_max_m do not count. Nothing where too few count, or no
-  // pose has a score of 0.5.
-  std::vector<PlanMatch> Match(std::span<const Point> points_base, const OccupancyConfig& heights) const;
+  // pose has a score of 0.5; in a region 0.25, because at the start of a loop the map shows only a part of the piece.
+  std::vector<PlanMatch> Match(std::span<const Point> points_base, const OccupancyConfig& heights,
+                               const std::optional<PlanRegion>& region = {}) const;
+  // The score of the points at this pose.
+  double Score(std::span<const Point> points_base, const OccupancyConfig& heights, const Pose& T_map_base) const;
   // The map knows that there is no wall in this cell, nor in the eight around it.
   bool IsFree(const Eigen::Vector2d& point_map) const;
 
@@ -48,8 +59,9 @@ class FloorPlan {
 
   static Spectrum SpectrumOf(std::span<const Eigen::Vector2d> walls, double cell_m);
   std::vector<double> YawsOf(std::span<const Eigen::Vector2d> walls_base) const;
+  bool Reaches(const PlanRegion& region, const Node& node) const;
   std::int8_t At(int level, int x, int y) const;
-  int Score(std::span<const Eigen::Vector2i> cells, const Node& node) const;
+  int Bound(std::span<const Eigen::Vector2i> cells, const Node& node) const;
   void Search(std::span<const Eigen::Vector2i> cells, const Node& node, Best& best) const;
   void PoolCells();
 
