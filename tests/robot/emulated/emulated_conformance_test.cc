@@ -18,7 +18,7 @@ namespace {
 
 // The simulation would not keep real time under the thread sanitizer with all errors and 20 frames a second.
 TwinOptions RealTimeOptions(const sim::TemporaryFile& room) {
-  TwinOptions options = Options(room);
+  TwinOptions options = MerlinIn(room);
 #ifdef __SANITIZE_THREAD__
   options.depth.effects = sim::kIdealTof;
   options.depth.rate_hz = 5.0;
@@ -39,7 +39,7 @@ HardwareConfig DevicesOf(const EmulatedRobot& emulated, const std::filesystem::p
 class RiggedEmulation final : public MerlinBeforeWall {
  public:
   RiggedEmulation()
-      : options_(MerlinIn(room_)),
+      : options_(RealTimeOptions(room_)),
         clock_({.watchdog_s = 10.0}, Time::max()),
         emulated_(options_, sockets_.path(), clock_),
         drive_cable_(emulated_.drive_port(), EmulatedRobot::kDriveBaud, sockets_.path() / "drive") {
