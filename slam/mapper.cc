@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "slam/loop/find_place.h"
 #include "slam/map/moved_away.h"
 
 namespace merlin {
@@ -18,6 +19,8 @@ constexpr double kNear_m = 4.0;        // former key frames with view centres ne
 constexpr int kRecalledPerFrame = 2;   // ...so many a frame: it keeps up at 4 m/s
 constexpr double kPruneEvery_m = 1.0;
 constexpr Duration kBetweenRuns = std::chrono::seconds(1);
+// When the run has ended, a drifted place is searched each so many metres, and confirmed so far before.
+constexpr double kSearchedEvery_m = 2.0, kConfirmed_m = 0.3;
 
 double DistanceOfViews_m(const Pose& a, const Pose& b) { return (ViewCentre(a) - ViewCentre(b)).norm(); }
 
@@ -102,21 +105,26 @@ Keyframe* Mapper::NearestOfFormerVisit(const Pose& T_map_base, double view_yaw_r
 }
 
 std::vector<Point> Mapper::RecentPoints(const Observation& observation, const Pose& T_map_base) const {
-  std::vector<Point> points = observation.points_base;
-  for (auto keyframe = keyframes_.rbegin(); keyframe != keyframes_.rend() && path_m_ - keyframe->path_m < kRecent_m;
-       ++keyframe) {
-    const Eigen::Isometry3f T = (T_map_base.inverse() * keyframe->T_map_base).cast<float>();
-    for (Point point : keyframe->points_base) {
+  return RecentPoints(observation.points_base, keyframes_.size() - 1, T_map_base, path_m_);
+}
+
+// The points, and those of the key frames up to `newest` that are on the last metre before path_m, thinned.
+std::vector<Point> Mapper::RecentPoints(std::vector<Point> points_base, std::size_t newest, const Pose& T_map_base,
+                                        double path_m) const {
+  for (std::size_t i = newest + 1; i-- > 0 && path_m - keyframes_[i].path_m < kRecent_m;) {
+    const Eigen::Isometry3f T = (T_map_base.inverse() * keyframes_[i].T_map_base).cast<float>();
+    for (Point point : keyframes_[i].points_base) {
       point.position = T * point.position;
-      points.push_back(point);
+      points_base.push_back(point);
     }
   }
-  return Downsample(points, config_.source_voxel_m);
+  return Downsample(points_base, config_.source_voxel_m);
 }
 
 // The pose of this frame, corrected where it closes a loop.
 Pose Mapper::CloseLoop(const Observation& observation, const Pose& T_map_base) {
-  const auto corrected = closer_.Search(keyframes_, RecentPoints(observation, T_map_base), T_map_base, path_m_);
+  const std::vector<Point> points = RecentPoints(observation.points_base, keyframes_.size() - 1, T_map_base, path_m_);
+  const auto corrected = closer_.Search(keyframes_, points, T_map_base, path_m_);
   if (!corrected) return T_map_base;
   double moved_m = 0.0;
   for (std::size_t i = 0; i < corrected->size(); ++i)
@@ -125,6 +133,36 @@ Pose Mapper::CloseLoop(const Observation& observation, const Pose& T_map_base) {
   const Pose T_map_corrected = corrected->back() * keyframes_.back().T_map_base.inverse() * T_map_base;
   MoveKeyframes(*corrected);
   return T_map_corrected;
+}
+
+void Mapper::Finish() {
+  if (!config_.loop.enabled) return;
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) {
+    const double path_m = keyframes_[i].path_m;
+    if (closer_.SinceLoop_m(path_m) <= 0.0 || closer_.KnowsThePlace(path_m)) continue;
+    const Pose T_map_base = keyframes_[i].T_map_base;
+    if (const auto corrected = closer_.Search(keyframes_, RecentPoints({}, i, T_map_base, path_m), T_map_base, path_m))
+      MoveKeyframes(*corrected);
+  }
+  if (closer_.loops() == 0) SearchWherePoseDrifted();
+}
+
+// From the end of the run backwards: there the drift is largest, and its correction reaches the most key frames. A place
+// that was found is confirmed a little before it.
+void Mapper::SearchWherePoseDrifted() {
+  double next_m = path_m_;
+  for (std::size_t i = keyframes_.size(); i-- > 0 && keyframes_[i].path_m > config_.loop.apart_m;) {
+    const double path_m = keyframes_[i].path_m;
+    if (path_m > next_m) continue;
+    const auto later = std::ranges::upper_bound(keyframes_, path_m - config_.loop.apart_m, {}, &Keyframe::path_m);
+    const std::span<const Keyframe> former(keyframes_.begin(), later);
+    const Pose T_map_base = keyframes_[i].T_map_base;
+    const PlanRegion reach{T_map_base, config_.loop.reach_m + config_.loop.reach_share * path_m, config_.loop.turn_rad};
+    const PlaceFinder finder(former, config_.loop, config_.occupancy);
+    const auto place = finder.Find(former, RecentPoints({}, i, T_map_base, path_m), reach).place;
+    next_m = path_m - (place ? kConfirmed_m : kSearchedEvery_m);
+    if (const auto corrected = closer_.Take(keyframes_, place, T_map_base, path_m)) return MoveKeyframes(*corrected);
+  }
 }
 
 void Mapper::MoveKeyframes(const std::vector<Pose>& corrected) {

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "perception/observation.h"
@@ -42,6 +43,10 @@ class Mapper {
   std::vector<Point> RecentPoints(const Observation& observation, const Pose& T_map_base) const;
   // To be called at the end of each frame, added or not: lets go what lies far behind, goes on renewing the grid.
   void EndFrame(double path_m);
+  // Searches for loops once more, at every key frame since a former visit was last recognised: a run may end before two
+  // searches agreed. Where the whole run closed no loop, its places are searched in all that the drift allows
+  // (slam/loop/find_place.h). May take some seconds.
+  void Finish();
 
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const VoxelMap& local_map() const { return local_; }
@@ -58,7 +63,10 @@ class Mapper {
                    std::optional<double> yaw_rad);
   void AddView(const Observation& observation, const Pose& T_map_base, Keyframe& keyframe);
   Keyframe* NearestOfFormerVisit(const Pose& T_map_base, double view_yaw_rad);
+  std::vector<Point> RecentPoints(std::vector<Point> points_base, std::size_t newest, const Pose& T_map_base,
+                                  double path_m) const;
   Pose CloseLoop(const Observation& observation, const Pose& T_map_base);
+  void SearchWherePoseDrifted();
   void MoveKeyframes(const std::vector<Pose>& corrected);
   void RenewLocalMap();
   void RecallFormerVisit(const Pose& T_map_base);

@@ -48,7 +48,7 @@ void Fields(Visitor& visit, Is<Keyframe> auto& keyframe) {
 }
 template <class Visitor>
 void Fields(Visitor& visit, Is<GraphEdge> auto& edge) {
-  visit(edge.from), visit(edge.to), visit(edge.T_from_to), visit(edge.information);
+  visit(edge.from), visit(edge.to), visit(edge.T_from_to), visit(edge.information), visit(edge.robust);
 }
 template <class Visitor>
 void Fields(Visitor& visit, Is<SavedMap> auto& map) {

@@ -39,6 +39,10 @@ class Slam {
   // odometry that is not finite. Map frame: see slam/localizer.h.
   std::optional<Pose> Update(const Observation& observation);
 
+  // To be called when a run has ended: searches for loops once more (slam/mapper.h). Corrects key frames, trajectory and
+  // what is built from them.
+  void Finish() { mapper_.Finish(); }
+
   const RegisterResult& last() const { return localizer_.last(); }  // how well the last frame fitted
   // Frames in a row that did not fit: odometry carried the pose, and nothing of them entered the map.
   int lost_frames() const { return localizer_.lost_frames(); }

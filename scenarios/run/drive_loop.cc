@@ -184,6 +184,7 @@ LoopEnd DriveLoop::Run(const std::atomic<bool>& stop, const LoopObserver& observ
   LoopEnd end = LoopEnd::kTimeUp;
   faults.Try([&] { end = Drive(stop, observer, manual); });
   Halt(faults);
+  faults.Try([&] { slam_.Finish(); });
   if (faults.get()) std::rethrow_exception(faults.get());
   return end;
 }

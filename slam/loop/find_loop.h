@@ -33,13 +33,14 @@ struct LoopConfig {
   double sigma_max_m = 0.05;      // [1e-3, 10] one sigma of the position, in the direction that is known worst
   int agreeing_min = 2;           // [1, 100] searches in a row must agree on the correction
   double agreeing_m = 0.05;       // [1e-3, 10] within this distance, and the same number of rad
-  double strain_max = 30.0;       // [1, 1e6] chi2 that the loop may add to the graph: 99.99 % with 6 degrees of freedom
+  double chi2_max = 21.1;         // [1, 1e6] of a loop against the drift: 99.99 % of right ones, 3 degrees of freedom
 
   // Weights of the graph of key frames: standard deviations.
   double path_sigma_m_per_sqrt_m = 0.012;    // [1e-5, 1] of a step between key frames, by the root of its length; guess
   double turn_sigma_rad_per_sqrt_m = 0.002;  // [1e-5, 1] of its turn; guess
-  double loop_sigma_m = 0.01;                // [1e-4, 10] of a loop, added to what registration says; guess
-  double loop_sigma_rad = 0.003;             // [1e-5, 1] the same for its turn; guess
+  double corner_sigma_rad_per_sqrt_rad = 0.025;  // [1e-5, 1] without a heading, of a turn, by its root; see the graph
+  double loop_sigma_m = 0.01;                    // [1e-4, 10] of a loop, added to what registration says; guess
+  double loop_sigma_rad = 0.003;                 // [1e-5, 1] the same for its turn; guess
   double heading_sigma_rad = 0.02;  // [1e-4, 3] of a key frame's heading; large, because neighbours err alike; guess
 };
 
@@ -60,9 +61,10 @@ void Visit(Visitor& v, LoopConfig& c) {
   v("sigma_max_m", c.sigma_max_m, {1e-3, 10.0});
   v("agreeing_min", c.agreeing_min, {1.0, 100.0});
   v("agreeing_m", c.agreeing_m, {1e-3, 10.0});
-  v("strain_max", c.strain_max, {1.0, 1e6});
+  v("chi2_max", c.chi2_max, {1.0, 1e6});
   v("path_sigma_m_per_sqrt_m", c.path_sigma_m_per_sqrt_m, {1e-5, 1.0});
   v("turn_sigma_rad_per_sqrt_m", c.turn_sigma_rad_per_sqrt_m, {1e-5, 1.0});
+  v("corner_sigma_rad_per_sqrt_rad", c.corner_sigma_rad_per_sqrt_rad, {1e-5, 1.0});
   v("loop_sigma_m", c.loop_sigma_m, {1e-4, 10.0});
   v("loop_sigma_rad", c.loop_sigma_rad, {1e-5, 1.0});
   v("heading_sigma_rad", c.heading_sigma_rad, {1e-4, 3.0});

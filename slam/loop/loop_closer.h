@@ -1,12 +1,16 @@
 // Closes loops. Where a place of an earlier visit is recognised several times in a row, an edge joins the key frames of
 // the two visits, and the graph of all key frames is optimised (F. Lu and E. Milios, "Globally consistent range scan
-// alignment for environment mapping", Autonomous Robots 4, 1997). A loop that contradicts odometry and headings is
-// refused.
+// alignment for environment mapping", Autonomous Robots 4, 1997).
 //
-//   edges of the graph            measured by
-//   key frame to the next one     registration, while driving
+//   edges of the graph            measured by                     error
+//   key frame to the next one     registration, while driving     grows with the distance; without a heading, also with
+//                                                                 the turn: a compass would have bounded it
 //   world to key frame            heading; yaw only
-//   key frame to a former one     closed loop
+//   key frame to a former one     loop                            of the registration; the loop may be wrong as a whole
+//
+// Two tests keep a wrong loop out of the map. First, a loop must agree with the drift that the other edges imply: chi2 of
+// its difference from them. Second, the loops must agree with each other. Their edges are robust, and after each closed
+// loop those with too large a chi2 are left out of the graph. They remain candidates: a later loop may side with them.
 #pragma once
 
 #include <cmath>
@@ -23,12 +27,19 @@ class LoopCloser {
  public:
   explicit LoopCloser(const LoopConfig& config) : config_(config) {}
 
-  // Searches for a former visit at the present pose. points_base: the newest points, in the present frame. Where a loop
-  // of the newest key frame is closed: the poses of all key frames that agree best with the steps between them, their
-  // headings and the loops. Height, roll and pitch stay, and so does the first pose. A place recognised where no new
-  // key frame was taken needs no loop. A loop that adds more than strain_max to chi2 is refused.
+  // Searches for a former visit at the present pose. points_base: the newest points, in the present frame. keyframes: all;
+  // once a run has ended the present pose may be that of any of them. Returns what Take does.
   std::optional<std::vector<Pose>> Search(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
                                           const Pose& T_map_base, double path_m);
+  // Takes the result of one search at T_map_base; loop: empty where it found none. Where enough of them agree in a row, it
+  // closes the loop. A place recognised where no new key frame was taken needs no loop.
+  std::optional<std::vector<Pose>> Take(std::span<const Keyframe> keyframes, const std::optional<Loop>& loop,
+                                        const Pose& T_map_base, double path_m);
+  // Adds a loop, of the newest key frame of that distance driven. Returns the poses of all key frames that agree best with the steps between them,
+  // their headings and the loops. Height, roll and pitch stay, and so does the first pose. Nothing where the loop
+  // contradicts the drift or the other loops.
+  std::optional<std::vector<Pose>> Close(std::span<const Keyframe> keyframes, const Loop& loop, const Pose& T_map_base,
+                                         double path_m);
   bool IsDue(double path_m) const {
     return config_.enabled && path_m - searched_m_ >= (KnowsThePlace(path_m) ? config_.every_known_m : config_.every_m);
   }
@@ -37,9 +48,10 @@ class LoopCloser {
 
   // Distance driven since a former visit was last recognised; infinite where none was.
   double SinceLoop_m(double path_m) const { return path_m - recognised_m_.value_or(-HUGE_VAL); }
-  // Loops closed so far, and the edges of all loops that the map has.
-  int loops() const { return static_cast<int>(loops_.size() - joined_); }
-  const std::vector<GraphEdge>& edges() const { return loops_; }
+  // Loops closed so far, without those that were left out again.
+  int loops() const { return loops_ - joined_; }
+  // All loops that agree with the drift, also those that are left out of the graph for now.
+  const std::vector<GraphEdge>& edges() const { return candidates_; }
 
   // A former map was put before the key frames: its loops, the number of its key frames, and the place of the newest key
   // frame in it. keyframes: all, in the former map's frame.
@@ -50,10 +62,12 @@ class LoopCloser {
   static constexpr double kKnown_m = 3.0;
   bool Agrees(const Loop& loop, const Pose& T_map_base);
   PoseGraph Graph(std::span<const Keyframe> keyframes) const;
+  double DriftChi2(PoseGraph graph, const GraphEdge& edge) const;
 
   LoopConfig config_;
-  std::vector<GraphEdge> loops_;
-  std::size_t joined_ = 0;  // of them: those of the former map, and the one that joined it
+  std::vector<GraphEdge> candidates_;  // all loops that agree with the drift
+  int loops_ = 0;                      // of them in the graph
+  int joined_ = 0;                     // of these: loops of the former map, and the one that joined it
   double searched_m_ = 0.0;
   std::optional<double> recognised_m_;
   std::optional<Pose> correction_;  // T_map_map of the last search

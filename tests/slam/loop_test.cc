@@ -143,10 +143,62 @@ TEST(LoopCloser, ClosesTheSquareAfterTwoSearchesThatAgree) {
 
 TEST(LoopCloser, RejectsALoopThatOdometryRulesOut) {
   const Square square({1.2, -0.3, 0.0});
-  LoopCloser closer({.reach_m = 3.0, .start_sigma_m = 2.0, .agreeing_min = 1, .strain_max = 30.0});
+  LoopCloser closer({.reach_m = 3.0, .start_sigma_m = 2.0, .agreeing_min = 1, .chi2_max = 21.1});
   const Keyframe& last = square.keyframes.back();
   EXPECT_FALSE(closer.Search(square.keyframes, last.points_base, last.T_map_base, last.path_m));
   EXPECT_EQ(closer.loops(), 0);
+}
+
+// What registration reports of key frame `to` where key frame `from` recognises it: the truth, but for an error.
+std::optional<std::vector<Pose>> CloseBetween(LoopCloser& closer, const Square& square, std::size_t from,
+                                              std::size_t to, const Pose& error) {
+  const Keyframe& former = square.keyframes[from];
+  const Loop loop{.former = from,
+                  .T_map_base = former.T_map_base * square.truths[from].inverse() * square.truths[to] * error,
+                  .covariance = 1e-4 * Matrix6d::Identity()};  // 1 cm and 0.01 rad
+  return closer.Close(square.keyframes, loop, square.keyframes[to].T_map_base, square.keyframes[to].path_m);
+}
+
+TEST(LoopCloser, TakesAWrongLoopOutAgainThatOtherLoopsContradict) {
+  const Square square({0.05, -0.04, 0.0});
+  Square bent = square;
+  LoopCloser closer({}), deceived({});
+  const auto wrong = CloseBetween(deceived, bent, 100, 300, FromXyYaw(0.12, 0.1, 0.0));
+  ASSERT_TRUE(wrong) << "alone it looks right: 0.16 m in 20 m, three times the error of odometry";
+  EXPECT_GT(WorstError_m(*wrong, square.truths), 0.1);
+  for (std::size_t i = 0; i < wrong->size(); ++i) bent.keyframes[i].T_map_base = (*wrong)[i];
+  for (const std::size_t from : {0, 104}) {
+    const std::size_t to = from == 0 ? 400 : 304;
+    const auto poses = CloseBetween(closer, square, from, to, Pose::Identity());
+    const auto poses_deceived = CloseBetween(deceived, bent, from, to, Pose::Identity());
+    ASSERT_TRUE(poses && poses_deceived);
+    for (std::size_t i = 0; i < poses->size(); ++i) bent.keyframes[i].T_map_base = (*poses_deceived)[i];
+    if (from == 0) continue;
+    EXPECT_LT(WorstError_m(*poses_deceived, *poses), 1e-4) << "the same map as without the wrong loop";
+  }
+  EXPECT_EQ(closer.loops(), 2);
+  EXPECT_EQ(deceived.loops(), 2);
+}
+
+TEST(LoopCloser, RefusesAWrongLoopWhereTwoRightOnesAreKnown) {
+  const Square square({0.05, -0.04, 0.0});
+  LoopCloser closer({});
+  ASSERT_TRUE(CloseBetween(closer, square, 0, 400, Pose::Identity()));
+  ASSERT_TRUE(CloseBetween(closer, square, 104, 304, Pose::Identity()));
+  EXPECT_FALSE(CloseBetween(closer, square, 100, 300, FromXyYaw(0.12, 0.1, 0.0)));
+  EXPECT_EQ(closer.loops(), 2);
+}
+
+// One sigma of the yaw after the fourth corner: 0.02 rad / sqrt(number of headings) with a compass, without one at least
+// 0.025 rad * sqrt(pi / 2) = 0.031 rad.
+TEST(LoopCloser, AllowsTheYawToDriftMoreWithoutACompass) {
+  Square square(Eigen::Vector3d::Zero());
+  LoopCloser with({});
+  EXPECT_FALSE(CloseBetween(with, square, 0, 405, FromXyYaw(0.0, 0.0, 0.08)));
+  for (Keyframe& keyframe : square.keyframes) keyframe.yaw_rad.reset();
+  LoopCloser without({});
+  EXPECT_TRUE(CloseBetween(without, square, 0, 405, FromXyYaw(0.0, 0.0, 0.08)));
+  EXPECT_FALSE(CloseBetween(without, square, 0, 405, FromXyYaw(0.0, 0.0, 0.6))) << "not that much";
 }
 
 TEST(LoopCloser, LeavesAMapWithoutDriftAsItIs) {
