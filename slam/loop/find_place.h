@@ -33,7 +33,7 @@ class PlaceFinder {
                    const std::optional<PlanRegion>& region = {}) const;
 
  private:
-  bool Contradicts(std::span<const Point> points_base, const Pose& T_map_base) const;
+  double FreeShare(std::span<const Point> points_base, const Pose& T_map_base) const;
 
   LoopConfig config_;
   OccupancyConfig heights_;
