@@ -99,7 +99,9 @@ std::optional<std::vector<Pose>> LoopCloser::Close(std::span<const Keyframe> key
                                                    const Pose& T_map_base, double path_m) {
   PoseGraph graph = Graph(keyframes);
   const GraphEdge newest = EdgeOf(keyframes, loop, KeyframeAt(keyframes, path_m), T_map_base, config_);
-  if (DriftChi2(graph, newest) > config_.chi2_max) return std::nullopt;
+  std::vector<Pose> alone;
+  if (DriftChi2(graph, newest, alone) > config_.chi2_max) return std::nullopt;
+  if (candidates_.empty()) graph.poses = alone;  // the optimum, unless it lets go of the edge
   candidates_.push_back(newest);
   const std::size_t others = graph.edges.size();
   graph.edges.insert(graph.edges.end(), candidates_.begin(), candidates_.end());
@@ -128,12 +130,13 @@ void LoopCloser::Join(const std::vector<GraphEdge>& former, std::size_t former_k
 
 // By how much the edge raises the least chi2 of the graph. In the linear problem this is its Mahalanobis distance: its
 // difference from what the graph says, weighted by the inverse of the sum of both covariances.
-double LoopCloser::DriftChi2(PoseGraph graph, const GraphEdge& edge) const {
+double LoopCloser::DriftChi2(PoseGraph graph, const GraphEdge& edge, std::vector<Pose>& poses) const {
   const OptimizeResult without = Optimize(graph, {});
   graph.poses = without.poses;
   graph.edges.push_back(edge);
   graph.edges.back().robust = false;
   const OptimizeResult with = Optimize(graph, {});
+  poses = with.poses;
   return without.converged && with.converged ? with.objective - without.objective : HUGE_VAL;
 }
 

@@ -62,7 +62,7 @@ class LoopCloser {
   static constexpr double kKnown_m = 3.0;
   bool Agrees(const Loop& loop, const Pose& T_map_base);
   PoseGraph Graph(std::span<const Keyframe> keyframes) const;
-  double DriftChi2(PoseGraph graph, const GraphEdge& edge) const;
+  double DriftChi2(PoseGraph graph, const GraphEdge& edge, std::vector<Pose>& poses) const;
 
   LoopConfig config_;
   std::vector<GraphEdge> candidates_;  // all loops that agree with the drift
