@@ -1,8 +1,6 @@
-// Searches for the car's place in the map of an earlier run, without any guess of where it is. What the car saw on the
-// last metre is laid over the floor plan of that map (slam/loop/floor_plan.h). Each pose that fits is verified by
-// registration against its key frames (slam/loop/find_loop.h). A place counts as found where no other one passes, and
-// where searches in a row, apart from each other, lead to the same one. So a wrong place would have to fit twice, and
-// by the same distance that the car drove.
+// Searches for the car's place in the map of an earlier run, without any guess of where it is (slam/loop/find_place.h). A
+// place counts as found where searches in a row, apart from each other, lead to the same one. So a wrong place would have
+// to fit twice, and by the same distance that the car drove.
 //
 //   frame   origin and axes
 //   former  those of the map that was loaded
@@ -13,9 +11,8 @@
 #include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
-#include "slam/loop/floor_plan.h"
+#include "slam/loop/find_place.h"
 #include "slam/saved_map.h"
 #include "slam/slam_config.h"
 
@@ -35,11 +32,9 @@ class PlaceSearch {
   SavedMap Release() { return std::move(former_); }  // the former map, when the search is over
 
  private:
-  std::vector<Loop> Verified(std::span<const Point> points_base, std::optional<double> yaw_rad) const;
-
   SavedMap former_;
   SlamConfig config_;
-  FloorPlan plan_;
+  PlaceFinder finder_;
   std::optional<Pose> T_map_searched_;  // where the car was at the last search
   std::optional<Pose> T_former_map_;    // as the last search found it
   int agreeing_ = 0;                    // searches in a row that agree with it

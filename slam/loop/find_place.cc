@@ -73,16 +73,16 @@ double PlaceFinder::FreeShare(std::span<const Point> points_base, const Pose& T_
   return high == 0 ? 0.0 : static_cast<double>(in_free) / high;
 }
 
-PlaceSearch PlaceFinder::Find(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
-                              const std::optional<PlanRegion>& region) const {
+PlaceFound PlaceFinder::Find(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
+                             const std::optional<PlanRegion>& region, const std::optional<PlanHeading>& heading) const {
   struct Candidate {
     std::size_t former = 0;
     PlaceFit fit;
     double score = 0.0;
   };
-  PlaceSearch search;
+  PlaceFound search;
   std::vector<Candidate> fits;
-  for (const PlanMatch& match : plan_.Match(points_base, heights_, region)) {
+  for (const PlanMatch& match : plan_.Match(points_base, heights_, region, heading)) {
     ++search.candidates;
     const std::vector<std::size_t> views = ViewsNear(keyframes, match.T_map_base);
     if (views.empty()) continue;

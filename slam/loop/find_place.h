@@ -15,7 +15,7 @@
 
 namespace merlin {
 
-struct PlaceSearch {
+struct PlaceFound {
   std::optional<Loop> place;  // where the car is, if that is known
   int candidates = 0;         // poses at which the floor plan fits; 0: it is a foreign place
   int fitting = 0;            // those of them that registration confirms; 2 and more: they cannot be told apart
@@ -28,9 +28,9 @@ class PlaceFinder {
   PlaceFinder(std::span<const Keyframe> keyframes, const LoopConfig& config, const OccupancyConfig& heights);
 
   // points_base: what was seen over the last metres, in the present frame; more of it makes the place clearer.
-  // keyframes: those that the finder was made from. region: nothing: anywhere. Takes some 10 ms per candidate.
-  PlaceSearch Find(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
-                   const std::optional<PlanRegion>& region = {}) const;
+  // keyframes: those that the finder was made from. region and heading: nothing: anywhere. Takes some 10 ms per candidate.
+  PlaceFound Find(std::span<const Keyframe> keyframes, std::span<const Point> points_base,
+                  const std::optional<PlanRegion>& region = {}, const std::optional<PlanHeading>& heading = {}) const;
 
  private:
   double FreeShare(std::span<const Point> points_base, const Pose& T_map_base) const;

@@ -188,13 +188,15 @@ double FloorPlan::Score(std::span<const Point> points_base, const OccupancyConfi
 }
 
 std::vector<PlanMatch> FloorPlan::Match(std::span<const Point> points_base, const OccupancyConfig& heights,
-                                        const std::optional<PlanRegion>& region) const {
+                                        const std::optional<PlanRegion>& region,
+                                        const std::optional<PlanHeading>& heading) const {
   const std::vector<Eigen::Vector2d> walls = WallsOf(points_base, heights, cell_m_);
   if (walls.size() < kWallsMin) return {};
   std::vector<PlanMatch> matches;
   const double whole = static_cast<double>(kWallCell * walls.size());
   double least = region ? kScoreMinInRegion : kScoreMin;
   for (const double yaw_rad : region ? YawsIn(*region) : YawsOf(walls)) {
+    if (heading && std::abs(WrapPi(yaw_rad - heading->yaw_rad)) > heading->within_rad) continue;
     std::vector<Eigen::Vector2i> cells;
     for (const Eigen::Vector2d& wall : walls)
       cells.push_back(((Eigen::Rotation2Dd(yaw_rad) * wall / cell_m_).array() + 0.5).floor().cast<int>());

@@ -30,6 +30,11 @@ struct PlanRegion {
   double reach_m = 0.0, reach_rad = 0.0;
 };
 
+// Only poses with about this yaw.
+struct PlanHeading {
+  double yaw_rad = 0.0, within_rad = 0.0;
+};
+
 class FloorPlan {
  public:
   explicit FloorPlan(const OccupancyGrid& grid);
@@ -38,7 +43,8 @@ class FloorPlan {
   // 15 deg. heights: points outside of height_min_m and height_max_m do not count. Nothing where too few count, or no
   // pose has a score of 0.5; in a region 0.25, because at the start of a loop the map shows only a part of the piece.
   std::vector<PlanMatch> Match(std::span<const Point> points_base, const OccupancyConfig& heights,
-                               const std::optional<PlanRegion>& region = {}) const;
+                               const std::optional<PlanRegion>& region = {},
+                               const std::optional<PlanHeading>& heading = {}) const;
   // The score of the points at this pose.
   double Score(std::span<const Point> points_base, const OccupancyConfig& heights, const Pose& T_map_base) const;
   // The map knows that there is no wall in this cell, nor in the eight around it.

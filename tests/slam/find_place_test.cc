@@ -110,7 +110,7 @@ TEST(PlaceFinder, KnowsThePlaceOnEverySideOfARingWithoutAnyGuess) {
   const PlaceFinder finder(keyframes, {}, {});
   for (const Pose& truth : {FromXyYaw(5.1, 1.1, 0.05), FromXyYaw(13.1, 3.6, 1.5), FromXyYaw(8.0, 8.9, 3.1),
                             FromXyYaw(1.1, 7.9, -1.6), FromXyYaw(10.0, 1.0, 0.0)}) {
-    const PlaceSearch search = finder.Find(keyframes, SeenIn(walls, truth));
+    const PlaceFound search = finder.Find(keyframes, SeenIn(walls, truth));
     ASSERT_TRUE(search.place) << truth.translation().transpose() << ": " << search.candidates << " candidates, "
                               << search.fitting << " fitting";
     EXPECT_LT((search.place->T_map_base.translation() - truth.translation()).norm(), 0.03);
@@ -124,7 +124,7 @@ TEST(PlaceFinder, SearchesNoFartherThanItsRegion) {
   const PlaceFinder finder(keyframes, {}, {});
   const Pose truth = FromXyYaw(5.1, 1.1, 0.05);
   const auto points = SeenIn(walls, truth);
-  const PlaceSearch near = finder.Find(keyframes, points, PlanRegion{FromXyYaw(6.4, 0.3, 0.25), 1.5, 0.3});
+  const PlaceFound near = finder.Find(keyframes, points, PlanRegion{FromXyYaw(6.4, 0.3, 0.25), 1.5, 0.3});
   ASSERT_TRUE(near.place);
   EXPECT_LT((near.place->T_map_base.translation() - truth.translation()).norm(), 0.03);
   EXPECT_FALSE(finder.Find(keyframes, points, PlanRegion{FromXyYaw(13.0, 6.0, 1.5), 1.5, 0.3}).place);
@@ -146,7 +146,7 @@ TEST(PlaceFinder, KnowsNoPlaceWhereTwoRoomsOfTheMapAreAlike) {
     keyframe.path_m += 100.0;
     keyframes.push_back(keyframe);
   }
-  const PlaceSearch search = PlaceFinder(keyframes, {}, {}).Find(keyframes, SeenIn(twins, FromXyYaw(5.1, 1.1, 0.05)));
+  const PlaceFound search = PlaceFinder(keyframes, {}, {}).Find(keyframes, SeenIn(twins, FromXyYaw(5.1, 1.1, 0.05)));
   EXPECT_FALSE(search.place);
   EXPECT_EQ(search.fitting, 2);
 }
