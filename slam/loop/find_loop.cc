@@ -15,7 +15,8 @@ constexpr std::size_t kFormerSweepMax = 60;  // ...but all of them where the cam
 constexpr double kThin_m = 0.08;             // each of them gives one point per voxel of this edge
 constexpr double kCoarse_m = 0.4, kFine_m = 0.1;
 constexpr int kIterations = 30;
-constexpr double kStep = 2e-3;  // m and rad; alternating pairs keep a fit from converging more finely
+constexpr double kSigmas = 3.0;  // of the start: farther away a fit is not believed
+constexpr double kStep = 2e-3;   // m and rad; alternating pairs keep a fit from converging more finely
 
 // Indices of key frames of earlier visits that see the same place, nearest view first.
 std::vector<std::size_t> FormerViews(std::span<const Keyframe> keyframes, const Pose& T_map_base, double path_m,
@@ -97,6 +98,12 @@ std::optional<Loop> FindLoop(std::span<const Keyframe> keyframes, std::span<cons
   if (former.empty()) return std::nullopt;
   const PlaceFit fit = FitToViews(keyframes, former, points_base, T_map_base, config);
   if (!Fits(fit, config) || fit.sigma_m > config.sigma_max_m) return std::nullopt;
+  // Shapes that are alike attract registration too. Beyond what it may correct, the place must be searched
+  // (slam/loop/find_place.h).
+  const Pose moved = T_map_base.inverse() * fit.fit.T_map_base;
+  if (moved.translation().head<2>().norm() > kSigmas * config.start_sigma_m ||
+      std::abs(Yaw(moved)) > kSigmas * config.start_sigma_rad)
+    return std::nullopt;
   return Loop{former.front(), fit.fit.T_map_base, fit.fit.covariance, fit.near};
 }
 
