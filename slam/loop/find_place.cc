@@ -100,6 +100,8 @@ PlaceFound PlaceFinder::Find(std::span<const Keyframe> keyframes, std::span<cons
   const auto best = std::ranges::max_element(fits, {}, &Candidate::score);
   search.fitting = static_cast<int>(
       std::ranges::count_if(fits, [&](const Candidate& c) { return c.score >= kAsGood * best->score; }));
+  search.rms_m = best->fit.fit.rms_m;
+  search.score = best->score;
   if (search.fitting == 1 && best->fit.sigma_m <= config_.sigma_max_m)
     search.place = Loop{best->former, best->fit.fit.T_map_base, best->fit.fit.covariance, best->fit.near};
   return search;
