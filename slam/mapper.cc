@@ -15,8 +15,10 @@ constexpr std::size_t kViewsMax = 4;   // of a key frame: its own, and three, as
 constexpr double kViewsApart_s = 0.3;  // between two views of one place, while the car does not move...
 constexpr double kAgainApart_s = 0.8;  // ...or comes by again: a further lap keeps less than 10 MB
 constexpr double kRecent_m = 1.0;      // loops are searched with what was seen over this distance
-constexpr double kNear_m = 4.0;        // former key frames with view centres nearer than this join the local map...
-constexpr int kRecalledPerFrame = 2;   // ...so many a frame: it keeps up at 4 m/s
+constexpr double kSearchedIn_m =
+    4.0;                              // and a former map with what was seen over this one: more tells more places apart
+constexpr double kNear_m = 4.0;       // former key frames with view centres nearer than this join the local map...
+constexpr int kRecalledPerFrame = 2;  // ...so many a frame: it keeps up at 4 m/s
 constexpr double kPruneEvery_m = 1.0;
 constexpr Duration kBetweenRuns = std::chrono::seconds(1);
 // When the run has ended, a drifted place is searched each so many metres, and confirmed so far before.
@@ -105,13 +107,13 @@ Keyframe* Mapper::NearestOfFormerVisit(const Pose& T_map_base, double view_yaw_r
 }
 
 std::vector<Point> Mapper::RecentPoints(const Observation& observation, const Pose& T_map_base) const {
-  return RecentPoints(observation.points_base, keyframes_.size() - 1, T_map_base, path_m_);
+  return RecentPoints(observation.points_base, keyframes_.size() - 1, T_map_base, path_m_, kSearchedIn_m);
 }
 
-// The points, and those of the key frames up to `newest` that are on the last metre before path_m, thinned.
+// The points, and those of the key frames up to `newest` that are on the last over_m before path_m, thinned.
 std::vector<Point> Mapper::RecentPoints(std::vector<Point> points_base, std::size_t newest, const Pose& T_map_base,
-                                        double path_m) const {
-  for (std::size_t i = newest + 1; i-- > 0 && path_m - keyframes_[i].path_m < kRecent_m;) {
+                                        double path_m, double over_m) const {
+  for (std::size_t i = newest + 1; i-- > 0 && path_m - keyframes_[i].path_m < over_m;) {
     const Eigen::Isometry3f T = (T_map_base.inverse() * keyframes_[i].T_map_base).cast<float>();
     for (Point point : keyframes_[i].points_base) {
       point.position = T * point.position;
@@ -123,7 +125,8 @@ std::vector<Point> Mapper::RecentPoints(std::vector<Point> points_base, std::siz
 
 // The pose of this frame, corrected where it closes a loop.
 Pose Mapper::CloseLoop(const Observation& observation, const Pose& T_map_base) {
-  const std::vector<Point> points = RecentPoints(observation.points_base, keyframes_.size() - 1, T_map_base, path_m_);
+  const std::vector<Point> points =
+      RecentPoints(observation.points_base, keyframes_.size() - 1, T_map_base, path_m_, kRecent_m);
   const auto corrected = closer_.Search(keyframes_, points, T_map_base, path_m_);
   if (!corrected) return T_map_base;
   double moved_m = 0.0;
@@ -141,7 +144,8 @@ void Mapper::Finish() {
     const double path_m = keyframes_[i].path_m;
     if (closer_.SinceLoop_m(path_m) <= 0.0 || closer_.KnowsThePlace(path_m)) continue;
     const Pose T_map_base = keyframes_[i].T_map_base;
-    if (const auto corrected = closer_.Search(keyframes_, RecentPoints({}, i, T_map_base, path_m), T_map_base, path_m))
+    if (const auto corrected =
+            closer_.Search(keyframes_, RecentPoints({}, i, T_map_base, path_m, kRecent_m), T_map_base, path_m))
       MoveKeyframes(*corrected);
   }
   if (closer_.loops() == 0) SearchWherePoseDrifted();
@@ -159,7 +163,7 @@ void Mapper::SearchWherePoseDrifted() {
     const Pose T_map_base = keyframes_[i].T_map_base;
     const PlanRegion reach{T_map_base, config_.loop.reach_m + config_.loop.reach_share * path_m, config_.loop.turn_rad};
     const PlaceFinder finder(former, config_.loop, config_.occupancy);
-    const auto place = finder.Find(former, RecentPoints({}, i, T_map_base, path_m), reach).place;
+    const auto place = finder.Find(former, RecentPoints({}, i, T_map_base, path_m, kRecent_m), reach).place;
     next_m = path_m - (place ? kConfirmed_m : kSearchedEvery_m);
     if (const auto corrected = closer_.Take(keyframes_, place, T_map_base, path_m)) return MoveKeyframes(*corrected);
   }

@@ -39,7 +39,7 @@ class Mapper {
   // Puts the key frames of a former map before those of this run, and changes to its frame. place: where the frame that
   // was added last is in the former map, in its frame. heading_turn_rad: what is added to the headings of this run.
   void Join(SavedMap former, const Pose& T_former_map, const Loop& place, double heading_turn_rad);
-  // Of this frame and of the key frames on the last metre, in this frame's base, thinned.
+  // Of this frame and of the key frames on the last metres, in this frame's base, thinned: to search a former map with.
   std::vector<Point> RecentPoints(const Observation& observation, const Pose& T_map_base) const;
   // To be called at the end of each frame, added or not: lets go what lies far behind, goes on renewing the grid.
   void EndFrame(double path_m);
@@ -64,7 +64,7 @@ class Mapper {
   void AddView(const Observation& observation, const Pose& T_map_base, Keyframe& keyframe);
   Keyframe* NearestOfFormerVisit(const Pose& T_map_base, double view_yaw_rad);
   std::vector<Point> RecentPoints(std::vector<Point> points_base, std::size_t newest, const Pose& T_map_base,
-                                  double path_m) const;
+                                  double path_m, double over_m) const;
   Pose CloseLoop(const Observation& observation, const Pose& T_map_base);
   void SearchWherePoseDrifted();
   void MoveKeyframes(const std::vector<Pose>& corrected);

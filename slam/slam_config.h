@@ -14,7 +14,7 @@ struct SearchConfig {
   double every_m = 0.25;     // [0.01, 10] distance driven between two searches...
   double every_rad = 0.3;    // [0.01, 3.2] ...or turn
   double heading_rad = 0.4;  // [0.01, 3.2] a place may contradict the compass by this much; steel bends it so far
-  int agreeing_min = 3;      // [1, 100] searches in a row must lead to the same place
+  int agreeing_min = 4;      // [1, 100] searches in a row must lead to the same place
   double agreeing_m = 0.15;  // [0.001, 10] within this distance, and the same number of rad
   double give_up_m = 15.0;   // [0.1, 1000] distance after which the car does not know the place: a long room's length
   double give_up_s = 60.0;   // [1, 1e5] the same as a time: as long as that distance takes

@@ -22,6 +22,7 @@ constexpr double kScoreMin = 0.6;  // on the floor plan
 // it. At the end of a lap without a compass: at most 0.03, at least 0.38 and 0.94; at a wrong place 0.08, 0.34 and 0.85.
 constexpr double kPartFreeMax = 0.04, kPartScoreMin = 0.35, kInlierShareMin = 0.9;
 constexpr double kAsGood = 0.85;                  // a fit with this share of the best one's score is as good
+constexpr double kAsNear = 1.5;                   // a fit with this multiple of the best one's rms is as good
 constexpr double kSame_m = 0.3, kSame_rad = 0.1;  // two fits nearer than this are the same place
 
 OccupancyGrid PlanGrid(std::span<const Keyframe> keyframes, OccupancyConfig heights) {
@@ -98,8 +99,10 @@ PlaceFound PlaceFinder::Find(std::span<const Keyframe> keyframes, std::span<cons
   }
   if (fits.empty()) return search;
   const auto best = std::ranges::max_element(fits, {}, &Candidate::score);
-  search.fitting = static_cast<int>(
-      std::ranges::count_if(fits, [&](const Candidate& c) { return c.score >= kAsGood * best->score; }));
+  // Anywhere in a map, bare walls alike are frequent: there the distances of the points must be alike, too.
+  search.fitting = static_cast<int>(std::ranges::count_if(fits, [&](const Candidate& c) {
+    return c.score >= kAsGood * best->score && (region || c.fit.fit.rms_m <= kAsNear * best->fit.fit.rms_m);
+  }));
   search.rms_m = best->fit.fit.rms_m;
   search.score = best->score;
   if (search.fitting == 1 && best->fit.sigma_m <= config_.sigma_max_m)
