@@ -1,6 +1,6 @@
 // Searches for the car's place in the map of an earlier run, without any guess of where it is (slam/loop/find_place.h). A
-// place counts as found where searches in a row, apart from each other, lead to the same one. So a wrong place would have
-// to fit twice, and by the same distance that the car drove.
+// place counts as found where searches in a row, apart from each other, lead to the same one. A wrong place would have
+// to fit each time, and to move by the distance that the car drove.
 //
 //   frame   origin and axes
 //   former  those of the map that was loaded

@@ -84,7 +84,6 @@ PlaceFound PlaceFinder::Find(std::span<const Keyframe> keyframes, std::span<cons
   PlaceFound search;
   std::vector<Candidate> fits;
   for (const PlanMatch& match : plan_.Match(points_base, heights_, region, heading)) {
-    ++search.candidates;
     const std::vector<std::size_t> views = ViewsNear(keyframes, match.T_map_base);
     if (views.empty()) continue;
     const PlaceFit fit = FitToViews(keyframes, views, points_base, match.T_map_base, config_);

@@ -19,8 +19,7 @@ struct PlaceFound {
   std::optional<Loop> place;  // where the car is, if that is known
   double rms_m = 0.0;         // how well the points fit there: inliers' distances from the former map...
   double score = 0.0;         // ...and the share of walls on the floor plan (PlanMatch)
-  int candidates = 0;         // poses at which the floor plan fits; 0: it is a foreign place
-  int fitting = 0;            // those of them that registration confirms; 2 and more: they cannot be told apart
+  int fitting = 0;            // poses that fit alike; 0: a foreign place; 2 and more: they cannot be told apart
 };
 
 class PlaceFinder {

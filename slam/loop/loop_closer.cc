@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace merlin {
 namespace {
@@ -32,14 +33,14 @@ std::size_t KeyframeAt(std::span<const Keyframe> keyframes, double path_m) {
 
 // The loop, as an edge from the former key frame to another one, which is near the present pose.
 GraphEdge EdgeOf(std::span<const Keyframe> keyframes, const Loop& loop, std::size_t to, const Pose& T_map_base,
-                 const LoopConfig& config) {
+                 const LoopConfig& config, bool robust = true) {
   const Pose T_base_newest = T_map_base.inverse() * keyframes[to].T_map_base;
   GraphEdge edge{.from = loop.former, .to = to};
   edge.T_from_to = keyframes[loop.former].T_map_base.inverse() * loop.T_map_base * T_base_newest;
   const Matrix6d least = DiagonalInformation(config.loop_sigma_m, config.loop_sigma_rad).inverse();
   const Matrix6d adjoint = Adjoint(T_base_newest.inverse());
   edge.information = (adjoint * loop.covariance * adjoint.transpose() + least).inverse();
-  edge.robust = true;
+  edge.robust = robust;
   return edge;
 }
 
@@ -101,28 +102,31 @@ std::optional<std::vector<Pose>> LoopCloser::Close(std::span<const Keyframe> key
   const GraphEdge newest = EdgeOf(keyframes, loop, KeyframeAt(keyframes, path_m), T_map_base, config_);
   std::vector<Pose> alone;
   if (DriftChi2(graph, newest, alone) > config_.chi2_max) return std::nullopt;
-  if (candidates_.empty()) graph.poses = alone;  // the optimum, unless it lets go of the edge
-  candidates_.push_back(newest);
   const std::size_t others = graph.edges.size();
-  graph.edges.insert(graph.edges.end(), candidates_.begin(), candidates_.end());
+  std::ranges::copy_if(edges_, std::back_inserter(graph.edges), &GraphEdge::robust);
+  if (graph.edges.size() == others) graph.poses = alone;  // the optimum, unless it lets go of the edge
+  edges_.push_back(newest);
+  graph.edges.push_back(newest);
   OptimizeResult solved = Optimize(graph, kRobust);
   const bool holds = Chi2(graph, solved.poses, newest) <= config_.chi2_max;
   if (!solved.converged || !holds) return std::nullopt;
-  graph.edges.resize(others);
-  for (const GraphEdge& edge : candidates_)
-    if (Chi2(graph, solved.poses, edge) <= config_.chi2_max) graph.edges.push_back(edge);
+  const auto refuted = [&](const GraphEdge& edge) {
+    return edge.robust && Chi2(graph, solved.poses, edge) > config_.chi2_max;
+  };
+  const bool all_hold = std::erase_if(graph.edges, refuted) == 0;
   loops_ = static_cast<int>(graph.edges.size() - others);
-  if (graph.edges.size() < others + candidates_.size()) solved = Optimize(graph, kRobust);
+  if (!all_hold) solved = Optimize(graph, kRobust);
   return InPlane(keyframes, solved.poses);
 }
 
 void LoopCloser::Join(const std::vector<GraphEdge>& former, std::size_t former_keyframes,
                       std::span<const Keyframe> keyframes, const Loop& place, double path_m) {
-  for (GraphEdge& edge : candidates_) edge.from += former_keyframes, edge.to += former_keyframes;
-  candidates_.insert(candidates_.begin(), former.begin(), former.end());
-  candidates_.push_back(EdgeOf(keyframes, place, keyframes.size() - 1, place.T_map_base, config_));
-  joined_ += static_cast<int>(former.size()) + 1;
-  loops_ += static_cast<int>(former.size()) + 1;
+  for (GraphEdge& edge : edges_) edge.from += former_keyframes, edge.to += former_keyframes;
+  edges_.insert(edges_.begin(), former.begin(), former.end());
+  edges_.push_back(EdgeOf(keyframes, place, keyframes.size() - 1, place.T_map_base, config_, false));
+  const int former_loops = static_cast<int>(std::ranges::count(former, true, &GraphEdge::robust));
+  joined_ += former_loops;
+  loops_ += former_loops;
   recognised_m_ = searched_m_ = path_m;
   correction_.reset();
   agreeing_ = 0;
@@ -140,7 +144,8 @@ double LoopCloser::DriftChi2(PoseGraph graph, const GraphEdge& edge, std::vector
   return without.converged && with.converged ? with.objective - without.objective : HUGE_VAL;
 }
 
-// Without loops. Its poses are the key frames, then one at the map's origin, from which headings are measured.
+// Without loops, but with the places that join runs. Its poses are the key frames, then one at the map's origin, from
+// which headings are measured.
 PoseGraph LoopCloser::Graph(std::span<const Keyframe> keyframes) const {
   PoseGraph graph;
   graph.planar = true;
@@ -165,6 +170,7 @@ PoseGraph LoopCloser::Graph(std::span<const Keyframe> keyframes) const {
     graph.edges.push_back({world, i, FromXyYaw(0.0, 0.0, *keyframe.yaw_rad), heading});
   }
   graph.poses.push_back(Pose::Identity());
+  std::ranges::copy_if(edges_, std::back_inserter(graph.edges), [](const GraphEdge& edge) { return !edge.robust; });
   return graph;
 }
 

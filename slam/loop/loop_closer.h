@@ -7,6 +7,8 @@
 //                                                                 the turn: a compass would have bounded it
 //   world to key frame            heading; yaw only
 //   key frame to a former one     loop                            of the registration; the loop may be wrong as a whole
+//   first key frame of a run      place in the map of a former    of the registration; never doubted: nothing else holds
+//   to a former one               run (slam/place_search.h)       the two runs together
 //
 // Two tests keep a wrong loop out of the map. First, a loop must agree with the drift that the other edges imply: chi2 of
 // its difference from them. Second, the loops must agree with each other. Their edges are robust, and after each closed
@@ -35,9 +37,9 @@ class LoopCloser {
   // closes the loop. A place recognised where no new key frame was taken needs no loop.
   std::optional<std::vector<Pose>> Take(std::span<const Keyframe> keyframes, const std::optional<Loop>& loop,
                                         const Pose& T_map_base, double path_m);
-  // Adds a loop, of the newest key frame of that distance driven. Returns the poses of all key frames that agree best with the steps between them,
-  // their headings and the loops. Height, roll and pitch stay, and so does the first pose. Nothing where the loop
-  // contradicts the drift or the other loops.
+  // Adds a loop from a former key frame to the one at path_m. Returns the poses of all key frames that agree best with the
+  // steps between them, their headings and the loops. Height, roll and pitch stay, and so does the first pose. Nothing
+  // where the loop contradicts the drift or the other loops.
   std::optional<std::vector<Pose>> Close(std::span<const Keyframe> keyframes, const Loop& loop, const Pose& T_map_base,
                                          double path_m);
   bool IsDue(double path_m) const {
@@ -50,11 +52,11 @@ class LoopCloser {
   double SinceLoop_m(double path_m) const { return path_m - recognised_m_.value_or(-HUGE_VAL); }
   // Loops closed so far, without those that were left out again.
   int loops() const { return loops_ - joined_; }
-  // All loops that agree with the drift, also those that are left out of the graph for now.
-  const std::vector<GraphEdge>& edges() const { return candidates_; }
+  // Of all loops that agreed with the drift, in the graph or not (robust), and of the places that joined runs (not robust).
+  const std::vector<GraphEdge>& edges() const { return edges_; }
 
-  // A former map was put before the key frames: its loops, the number of its key frames, and the place of the newest key
-  // frame in it. keyframes: all, in the former map's frame.
+  // Takes note that a former map was put before the key frames: its edges, the number of its key frames, and the place of
+  // the newest key frame in it. keyframes: all, in the former map's frame.
   void Join(const std::vector<GraphEdge>& former, std::size_t former_keyframes, std::span<const Keyframe> keyframes,
             const Loop& place, double path_m);
 
@@ -65,9 +67,9 @@ class LoopCloser {
   double DriftChi2(PoseGraph graph, const GraphEdge& edge, std::vector<Pose>& poses) const;
 
   LoopConfig config_;
-  std::vector<GraphEdge> candidates_;  // all loops that agree with the drift
-  int loops_ = 0;                      // of them in the graph
-  int joined_ = 0;                     // of these: loops of the former map, and the one that joined it
+  std::vector<GraphEdge> edges_;  // see edges()
+  int loops_ = 0;                 // loops in the graph
+  int joined_ = 0;                // of these: loops of the former map
   double searched_m_ = 0.0;
   std::optional<double> recognised_m_;
   std::optional<Pose> correction_;  // T_map_map of the last search

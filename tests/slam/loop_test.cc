@@ -201,6 +201,25 @@ TEST(LoopCloser, AllowsTheYawToDriftMoreWithoutACompass) {
   EXPECT_FALSE(CloseBetween(without, square, 0, 405, FromXyYaw(0.0, 0.0, 0.6))) << "not that much";
 }
 
+// The second half of the square is another run, of which only its place in the first one is known. Odometry errs by 0.08 m
+// in 40 m.
+TEST(LoopCloser, JudgesLoopsBetweenTwoRunsByThePlaceThatJoinedThem) {
+  Square square({0.05, -0.04, 0.0});
+  square.keyframes[200].first_of_run = true;
+  const Loop place{.former = 199,
+                   .T_map_base = square.keyframes[199].T_map_base * square.truths[199].inverse() * square.truths[200],
+                   .covariance = 1e-4 * Matrix6d::Identity()};
+  LoopCloser closer({});
+  closer.Join({}, 200, std::span(square.keyframes).first(201), place, square.keyframes[200].path_m);
+  EXPECT_FALSE(CloseBetween(closer, square, 0, 400, FromXyYaw(3.0, 0.0, 0.0)));
+  const auto poses = CloseBetween(closer, square, 0, 400, Pose::Identity());
+  ASSERT_TRUE(poses);
+  EXPECT_LT(WorstError_m(*poses, square.truths), 0.04);
+  EXPECT_EQ(closer.loops(), 1) << "the place is none";
+  ASSERT_EQ(closer.edges().size(), 2u);
+  EXPECT_FALSE(closer.edges().front().robust) << "nothing else holds the two runs together";
+}
+
 TEST(LoopCloser, LeavesAMapWithoutDriftAsItIs) {
   const Square square(Eigen::Vector3d::Zero());
   LoopCloser closer({.agreeing_min = 1});
