@@ -25,7 +25,7 @@ struct Situation {
   int lost_frames = 0;             // frames in a row that did not fit the map: the pose is by odometry alone
   bool has_map = true;             // mapping has begun: some frame had points enough
   bool holds_position = true;  // what the newest frame saw holds the position on the floor: it sees more than a floor
-  bool searching = false;          // the car searches for its place in the map of an earlier run
+  bool searching = false;      // the car searches for its place in the map of an earlier run
   // The map frame has changed with this observation: maps what is remembered in the frame before to the new one. None: it
   // is the same as before.
   std::optional<Pose> T_map_before{};

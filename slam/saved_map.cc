@@ -185,7 +185,7 @@ std::string HashOfContent(std::string_view content) {
 }
 
 std::string_view ContentOf(std::string_view bytes, const std::string& name) {
-  if (!bytes.starts_with(kMagic)) throw InputError(name, "is no map", kWhat);
+  if (!bytes.starts_with(kMagic)) throw InputError(name, "is not a map", kWhat);
   MapReader header(bytes.substr(kMagic.size()));
   std::uint32_t version = 0;
   std::uint64_t size = 0;
@@ -221,8 +221,8 @@ SavedMap ParseSavedMap(std::string_view bytes, const std::string& name) {
   SavedMap map;
   read(map);
   if (!read.whole() || !read.at_end() || !IsSound(map))
-    throw InputError(name, "a damaged map: its content is none, though its checksum is right");
-  if (map.keyframes.empty()) throw InputError(name, "a map without a key frame: there is no place in it to find");
+    throw InputError(name, "a damaged map: the checksum is right, but the content is not that of a map");
+  if (map.keyframes.empty()) throw InputError(name, "a map without key frames: it shows no place");
   return map;
 }
 
