@@ -136,7 +136,7 @@ TEST(SavedMap, IsRefusedWithAnyByteChanged) {
 
 TEST(SavedMap, SaysWhatIsWrongInOneSentence) {
   const std::string bytes = ToBytes(SomeMap());
-  EXPECT_EQ(Complaint(""), "a/map.slam: is no map; expected a map of an earlier run (map.slam)");
+  EXPECT_EQ(Complaint(""), "a/map.slam: is not a map; expected a map of an earlier run (map.slam)");
   std::string later = bytes;
   later[8] = 2;
   EXPECT_EQ(Complaint(later), "a/map.slam: a map of another version of the program; expected version 1, got version 2");
@@ -146,7 +146,7 @@ TEST(SavedMap, SaysWhatIsWrongInOneSentence) {
   std::string changed = bytes;
   changed.back() ^= 1;
   EXPECT_EQ(Complaint(changed), "a/map.slam: a damaged map: its bytes do not give the checksum in its header");
-  EXPECT_EQ(Complaint(ToBytes({})), "a/map.slam: a map without a key frame: there is no place in it to find");
+  EXPECT_EQ(Complaint(ToBytes({})), "a/map.slam: a map without key frames: it shows no place");
   try {
     ReadSavedMap("/no/such/map.slam");
     FAIL();
@@ -181,7 +181,8 @@ TEST(SavedMap, RefusesWhatTheProgramTakesForGranted) {
   const auto refuses = [](auto spoil) {
     SavedMap map = SomeMap();
     spoil(map);
-    return Complaint(ToBytes(map)) == "a/map.slam: a damaged map: its content is none, though its checksum is right";
+    return Complaint(ToBytes(map)) ==
+           "a/map.slam: a damaged map: the checksum is right, but the content is not that of a map";
   };
   EXPECT_FALSE(refuses([](SavedMap&) {}));
   EXPECT_TRUE(refuses([](SavedMap& map) { map.loops[0].to = 2; }));
